@@ -1,4 +1,4 @@
-//! Stamps the binary with its commit and build settings, and embeds every experiment in `experiments/`.
+//! Stamps the binary with its commit, and embeds every experiment in `experiments/`.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -20,16 +20,8 @@ fn main() -> io::Result<()> {
     let mut status = vec!["status", "--porcelain", "--"];
     status.extend(SOURCES);
     let dirty = output("git", &status).is_none_or(|changes| !changes.is_empty());
-    let rustc = env::var("RUSTC").ok().and_then(|rustc| output(&rustc, &["--version"]));
     println!("cargo::rustc-env=PATHMARK_COMMIT={commit}");
     println!("cargo::rustc-env=PATHMARK_DIRTY={dirty}");
-    println!("cargo::rustc-env=PATHMARK_RUSTC={}", rustc.unwrap_or_else(|| "unknown".to_string()));
-    println!("cargo::rustc-env=PATHMARK_PROFILE={}", env::var("PROFILE").unwrap_or_default());
-    println!("cargo::rustc-env=PATHMARK_TARGET={}", env::var("TARGET").unwrap_or_default());
-    println!(
-        "cargo::rustc-env=PATHMARK_RUSTFLAGS={}",
-        env::var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default().replace('\x1f', " ")
-    );
 
     let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
     embed("experiments", &out.join("experiments.rs"))?;

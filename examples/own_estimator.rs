@@ -45,5 +45,5 @@ impl Estimator for Occlusion {
 }
 
 fn main() -> ExitCode {
-    Lab::new().estimator("occlusion", Occlusion).main()
+    pathmark::main(Lab::new().estimator("occlusion", Occlusion))
 }

@@ -57,7 +57,7 @@ impl Strategy for Fixed {
 }
 
 fn main() -> ExitCode {
-    Lab::new().strategy(ENTRY).main()
+    pathmark::main(Lab::new().strategy(ENTRY))
 }
 
 #[cfg(test)]

@@ -39,5 +39,5 @@ fn length(mut number: u64) -> u64 {
 }
 
 fn main() -> ExitCode {
-    Lab::new().workload("collatz", Collatz).main()
+    pathmark::main(Lab::new().workload("collatz", Collatz))
 }

@@ -57,48 +57,50 @@
 // Tests may unwrap; the library returns errors that say what is wrong.
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
+use std::process::ExitCode;
+
+pub use pathmark_harness::Lab;
+#[doc(inline)]
+pub use pathmark_harness::{
+    analysis, effect, error, estimator, experiment, film, film_file, image_io, kernel, lab, material, math, measure,
+    metric, sampling, scene, simulate, strategy,
+};
 #[doc(hidden)]
-pub mod atomic_file;
-pub mod check;
-#[cfg(feature = "program")]
-mod cli;
-#[cfg(feature = "program")]
-#[doc(hidden)]
-pub mod cluster;
-#[doc(hidden)]
-pub mod disk;
-pub mod experiment;
-#[doc(hidden)]
-pub mod file_id;
-#[doc(hidden)]
-pub mod files;
-pub mod film_file;
-pub mod image_io;
-pub mod lab;
-#[doc(hidden)]
-pub mod lock;
-pub mod measure;
-pub mod metric;
-#[cfg(feature = "program")]
-#[doc(hidden)]
-pub mod plot;
-#[cfg(feature = "program")]
-#[doc(hidden)]
-pub mod report;
-#[doc(hidden)]
-pub mod shell;
-pub mod simulate;
-mod temporary;
+pub use pathmark_harness::{atomic_file, cluster, disk, file_id, files, lock, shell, simd};
 
 #[cfg(feature = "program")]
-pub use cli::Allocator;
-pub use lab::Lab;
 #[doc(inline)]
-pub use pathmark_analysis as analysis;
-#[doc(inline)]
-pub use pathmark_strategy as strategy;
+pub use pathmark_check as check;
+#[cfg(feature = "program")]
+pub use pathmark_cli::Allocator;
+#[cfg(feature = "program")]
 #[doc(hidden)]
-pub use pathmark_tracer::simd;
-use pathmark_tracer::{digest, input};
-#[doc(inline)]
-pub use pathmark_tracer::{effect, error, estimator, film, kernel, material, math, sampling, scene};
+pub use pathmark_report::{self as report, plot};
+
+/// Runs the program with these tables and the process's arguments. This is `pathmark` with one workload more, for
+/// `cargo run --release -- render squares --strategy rayon`:
+///
+/// ```no_run
+/// use pathmark::Lab;
+/// use pathmark::kernel::workload::{Item, Workload};
+///
+/// struct Squares;
+///
+/// impl Workload for Squares {
+///     fn run(&self, item: &Item) -> [f64; 3] {
+///         [(0..item.index()).map(|n| (n * n) as f64).sum(), 0.0, 0.0]
+///     }
+/// }
+///
+/// fn main() -> std::process::ExitCode {
+///     pathmark::main(Lab::new().workload("squares", Squares))
+/// }
+/// ```
+#[cfg(feature = "program")]
+pub fn main(lab: Lab) -> ExitCode {
+    pathmark_harness::experiment::embed(experiment::Texts {
+        experiments: include!(concat!(env!("OUT_DIR"), "/experiments.rs")),
+        claims: include!(concat!(env!("OUT_DIR"), "/claims.rs")),
+    });
+    pathmark_cli::main(lab)
+}

@@ -3,7 +3,7 @@
 use super::experiment::{TINY, write_tiny};
 use super::program::{finish, pathmark};
 use super::refused;
-use pathmark::experiment::EXPERIMENTS;
+use pathmark::experiment::experiments;
 use pathmark::measure::SCHEMA;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -296,7 +296,7 @@ fn two_sweeps_at_once_do_not_share_a_folder() {
 fn a_second_reproduction_leaves_the_first_ones_folder() {
     let reproduce: [&str; 3] = ["reproduce", "--out", "out"];
     // Experiments run in the order of their names.
-    let (first, _) = EXPERIMENTS.first().unwrap();
+    let (first, _) = experiments().first().unwrap();
     let records = format!("out/{first}/records.csv");
     second_is_refused(&reproduce, &[&reproduce], &records, "out = out: is being written by another process");
 }

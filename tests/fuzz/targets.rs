@@ -3,7 +3,7 @@
 use pathmark::Lab;
 use pathmark::error::Result;
 use pathmark::experiment::{
-    Definition, EXPERIMENTS, Profile, RecordsFile, read_calibration, read_records, read_run_file,
+    Definition, Profile, RecordsFile, experiments, read_calibration, read_records, read_run_file,
 };
 use pathmark::film_file::read_film;
 use pathmark::image_io::{self, Image};
@@ -65,7 +65,7 @@ pub(crate) const TARGETS: &[Target] = &[
         file: "tiny.toml",
         read: experiment,
         // A large matrix has many cells, so it is known to take long.
-        more: || texts(EXPERIMENTS, 1300, "spheres"),
+        more: || texts(experiments(), 1300, "spheres"),
         words: EXPERIMENT_WORDS,
         mutations: 1200,
         ..TARGET
@@ -232,8 +232,8 @@ fn ok<T>(result: Result<T>) -> bool {
 }
 
 /// Definitions that the program carries, except long ones and those that contain `heavy`.
-fn texts(table: &[(&str, &str)], most: usize, heavy: &str) -> Vec<Vec<u8>> {
-    let texts = table.iter().map(|(_, text)| *text).filter(|text| text.len() < most && !text.contains(heavy));
+fn texts<T: AsRef<str>>(table: &[(T, T)], most: usize, heavy: &str) -> Vec<Vec<u8>> {
+    let texts = table.iter().map(|(_, text)| text.as_ref()).filter(|text| text.len() < most && !text.contains(heavy));
     texts.map(|text| text.as_bytes().to_vec()).collect()
 }
 

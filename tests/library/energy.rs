@@ -1,5 +1,5 @@
 //! Agreement of the estimators that split paths and those that do not. Closed forms are in the table of hard cases
-//! (`src/check`).
+//! (`crates/pathmark-check/src`).
 //!
 //! Levels are family-wise 1e-3 (Sidak) within each test, two-sided.
 

@@ -62,8 +62,16 @@ fn root() -> &'static Path {
 /// The folders of the project's own code, to which the limits on lints and lines apply.
 const FOLDERS: [&str; 5] = ["src", "tests", "benches", "crates", "examples"];
 
-/// The source folders whose modules refer to each other by `crate`: the package and the tracer's crate.
-const SOURCES: [&str; 2] = ["src", "crates/pathmark-tracer/src"];
+/// The crates of several layers, whose modules refer to each other by `crate`.
+const SOURCES: [&str; 2] = ["crates/pathmark-harness/src", "crates/pathmark-tracer/src"];
+
+/// The crates that are a layer as a whole. They import the modules of the others as if they were their own.
+const WHOLE: [(&str, &str); 4] = [
+    ("crates/pathmark-check/src", "check"),
+    ("crates/pathmark-report/src/plot", "plot"),
+    ("crates/pathmark-report/src", "report"),
+    ("crates/pathmark-cli/src", "cli"),
+];
 
 /// The location of a module's files: a separate crate that the package re-exports, a folder or a file.
 fn home(module: &str) -> Option<PathBuf> {
@@ -143,12 +151,16 @@ fn imports_are_found_wherever_they_stand() {
 fn modules_import_only_those_above() {
     let layers = layers();
     let (mut wrong, mut seen) = (Vec::new(), BTreeSet::new());
+    let whole = WHOLE.map(|(source, _)| source);
     for (source, file) in
-        SOURCES.iter().flat_map(|source| rust_files(source).into_iter().map(move |file| (source, file)))
+        SOURCES.iter().chain(&whole).flat_map(|source| rust_files(source).into_iter().map(move |file| (source, file)))
     {
+        let is_within = |(folder, _): &&(&str, &str)| file.starts_with(root().join(folder));
+        let layer = WHOLE.iter().find(is_within).map(|(_, module)| *module);
         let inner = file.strip_prefix(root().join(source)).unwrap();
-        let shown = inner.display();
-        let module = inner.components().next().unwrap().as_os_str().to_str().unwrap().trim_end_matches(".rs");
+        let shown = file.strip_prefix(root()).unwrap().display();
+        let first = inner.components().next().unwrap().as_os_str().to_str().unwrap().trim_end_matches(".rs");
+        let module = layer.unwrap_or(first);
         // The crate's roots name every module, in its declaration or by calling `cli`.
         if ["lib", "main"].contains(&module) {
             continue;
@@ -160,7 +172,15 @@ fn modules_import_only_those_above() {
         seen.insert(module.to_string());
         let parts = inner.components().count();
         let depth = if inner.ends_with("mod.rs") { parts - 1 } else { parts };
-        let targets = imports(&fs::read_to_string(&file).unwrap(), depth);
+        let mut targets = imports(&fs::read_to_string(&file).unwrap(), depth);
+        if layer.is_some() {
+            // Its own modules may have the names of others.
+            targets.retain(|target| layers.get(target).is_none_or(|row| *row <= layers[module]));
+            let crate_root = root().join(source);
+            targets.retain(|target| {
+                !crate_root.join(target).exists() && !crate_root.join(format!("{target}.rs")).exists()
+            });
+        }
         let refused = targets.iter().filter(|target| !may_import(&layers, module, target));
         wrong.extend(refused.map(|target| format!("{shown}: {module} imports {target}")));
     }
@@ -178,17 +198,16 @@ fn the_front_page_lists_the_public_modules() {
     let text = fs::read_to_string(root().join("src/lib.rs")).unwrap();
     let rows = text.lines().filter_map(|line| line.strip_prefix("//! | [`")?.split_once("`]"));
     let listed: Vec<&str> = rows.map(|(module, _)| module).collect();
-    let (_, tracer) = text.split_once("pub use pathmark_tracer::{").unwrap();
-    let (tracer, _) = tracer.split_once("};").unwrap();
-    let mut shown: BTreeSet<&str> = tracer.split(',').map(str::trim).collect();
-    let of_crates = text.lines().filter_map(|line| line.strip_prefix("pub use pathmark_")?.split_once(" as "));
-    shown.extend(of_crates.map(|(_, module)| module.trim_end_matches(';')));
-    let mut is_hidden = false;
-    for line in text.lines() {
-        if let Some(module) = line.strip_prefix("pub mod ").filter(|_| !is_hidden) {
-            shown.insert(module.trim_end_matches(';'));
+    let (_, code) = text.split_once("\n#![").unwrap();
+    let mut shown = BTreeSet::new();
+    // Each re-export that is not hidden: of several modules, or of a crate under another name.
+    for (attributes, rest) in code.split("\npub use ").zip(code.split("\npub use ").skip(1)) {
+        if attributes.ends_with("#[doc(inline)]") {
+            let (export, _) = rest.split_once(';').unwrap();
+            let name = export.split_once(" as ").map_or(export, |(_, name)| name);
+            let names = name.split_once("::{").map_or(name, |(_, names)| names.trim_end().trim_end_matches('}'));
+            shown.extend(names.split(',').map(str::trim).filter(|name| !name.is_empty()));
         }
-        is_hidden = line == "#[doc(hidden)]";
     }
     assert_eq!(listed.iter().copied().collect::<BTreeSet<_>>(), shown);
     assert_eq!(listed.len(), shown.len(), "a module is listed twice");

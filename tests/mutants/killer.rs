@@ -22,8 +22,10 @@ pub(crate) struct Killers {
 
 impl Killers {
     pub(crate) fn read(root: &Path) -> Self {
-        let cases =
-            source_files(&root.join("src/check")).iter().map(|file| fs::read_to_string(file).unwrap()).collect();
+        let cases = source_files(&root.join("crates/pathmark-check/src"))
+            .iter()
+            .map(|file| fs::read_to_string(file).unwrap())
+            .collect();
         let mut tests = Vec::new();
         for package in packages(root) {
             for (folder, program) in [("src", Some("lib")), ("tests", None)] {

@@ -63,7 +63,7 @@ fn the_script_of_the_page_joins_the_parts_of_a_command() {
         eprintln!("skipped: there is no Node");
         return;
     }
-    let script = include_str!("../../assets/report.js");
+    let script = include_str!("../../crates/pathmark-report/assets/report.js");
     let (_, own) = script.split_once("const commandOf = ").unwrap();
     let (own, _) = own.split_once("\n  };\n").unwrap();
     let again = r#"{ run: "pathmark run 'a b.toml'", filters: { "it's": "--filter 'scene=it'\\''s'", serial: "--filter strategy=serial" }, out: "--out x" }"#;

@@ -1,5 +1,5 @@
 //! Every deterministic sampler of the table, tested for the properties that estimators need besides the hard cases
-//! (`src/check/random_numbers`): nets, strata, convergence rates, and the joint distribution of uses.
+//! (`crates/pathmark-check/src/random_numbers`): nets, strata, convergence rates, and the joint distribution of uses.
 //!
 //! Every group of tests has a family-wise level of 1e-3 (Sidak), two-sided: numbers that are too even are as wrong as
 //! numbers that are too uneven. Seeds are fixed, so a pass is reproducible.

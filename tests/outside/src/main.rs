@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    outside::lab().main()
+    pathmark::main(outside::lab())
 }

@@ -152,7 +152,7 @@ impl Scene {
                 return error("triangles that extend over", extent, format!("f64, or an extent from {finest:.3e}"));
             }
         }
-        if let Some([one, other]) = self.near_in_single_precision() {
+        if let Some([one, other]) = &self.near {
             let problem = format!("cannot tell which of {one} and {other} is in front, so near are their surfaces");
             let allowed = "f64, or surfaces farther apart than 2^-20 of their coordinates and the camera's";
             return Err(InputError::new("precision", "f32", problem).allowed(allowed).into());

@@ -121,6 +121,8 @@ pub struct Scene {
     pub files: Vec<PathBuf>,
     /// Remarks for its author on how it was read.
     pub remarks: Vec<String>,
+    /// Two objects of which single precision cannot tell which one is in front, if the scene's definition has two.
+    pub(in crate::scene) near: Option<[String; 2]>,
     /// The estimator that the scene names. [`Scene::estimator`] also covers scenes that name none.
     pub default_estimator: Option<String>,
     /// The camera.

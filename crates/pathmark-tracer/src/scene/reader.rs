@@ -134,6 +134,7 @@ pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: 
         hash: String::new(),
         files: draft.files,
         remarks: Vec::new(),
+        near: None,
         default_estimator: draft.estimator,
         camera,
         primitives: Primitives::default(),
@@ -149,6 +150,7 @@ pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: 
     };
     add_parts(&mut scene, draft.parts, &mut draft.hash)?;
     scene.resolve_coincident();
+    scene.near = scene.near_in_single_precision();
     scene.hash = draft.hash.finish();
     scene.remarks.extend(scene.remarks_on_light());
     Ok(scene)

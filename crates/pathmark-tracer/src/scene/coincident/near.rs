@@ -12,7 +12,7 @@ impl Scene {
     /// Returns the names of two objects of which single precision cannot tell which one is in front, if there are two.
     ///
     /// It compares spheres, planes, and triangles of two objects with their like, and triangles with planes.
-    pub(in crate::scene) fn near_in_single_precision(&self) -> Option<[&str; 2]> {
+    pub(in crate::scene) fn near_in_single_precision(&self) -> Option<[String; 2]> {
         let camera = largest(self.camera.position);
         let slack = Slack { flat: SINGLE, sphere: SINGLE, least: SINGLE * camera };
         let [of_plane, of_triangle] =
@@ -31,7 +31,7 @@ impl Scene {
                 let found = Flat::overlaps(triangles, &self.owners[of_triangle..], &slack, |_| false);
                 found.first().map(|(one, other)| owners(of_triangle + one, of_triangle + other))
             });
-        pair.map(|pair| pair.map(|owner| &*self.objects[owner as usize].name))
+        pair.map(|pair| pair.map(|owner| self.objects[owner as usize].name.clone()))
     }
 
     fn near_spheres(&self, slack: &Slack) -> Option<(usize, usize)> {

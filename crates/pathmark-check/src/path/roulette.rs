@@ -1,0 +1,148 @@
+//! Russian roulette: when it ends paths, that it keeps the mean, and the variance that it adds.
+
+use crate::estimator::{ESTIMATORS, Options, Roulette, any_estimator};
+use crate::exact::{Bench, arriving_estimators, critical, full_estimators, run};
+use crate::film::Film;
+use crate::kernel::{KERNELS, Spec};
+use crate::math::{Ray, Vec3};
+use crate::measure::Settings;
+use crate::sampling::{Address, SampleKey, Sampler};
+use crate::scene::Scene;
+use crate::stage::{camera, object, scene, sphere};
+use crate::{Case, Trials};
+
+pub(super) const CASES: &[Case] = &[
+    Case { id: "P04", tries: "random numbers at the chance to survive", run: at_the_chance },
+    Case { id: "P05", tries: "black surfaces end the path", run: black },
+    Case { id: "P06", tries: "every rule of roulette keeps the mean", run: fair },
+    Case { id: "P07", tries: "the spread that roulette brings", run: spread },
+];
+
+fn hollow(albedo: [f64; 3], emission: [f64; 3]) -> Scene {
+    let material = format!("{{ diffuse = {{ albedo = {albedo:?} }} }}");
+    scene(&[camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), object(&sphere([0.0; 3], 1.0), &material, emission)])
+}
+
+/// A sampler that always returns one number.
+struct Always(f64);
+
+impl Sampler for Always {
+    fn pair(&self, _at: Address) -> [f64; 2] {
+        [self.0; 2]
+    }
+}
+
+/// A sample of a scene, with `u` as every random number.
+fn sample(estimator: &str, options: Options, scene: &Scene, u: f64) -> f64 {
+    let ray = Ray { origin: Vec3::new(0.1, 0.2, 0.3), direction: Vec3::new(1.0, 0.0, 0.0) };
+    let key = SampleKey { seed: 1, pixel: 0, sample: 0 };
+    let found = any_estimator(estimator, options).map(|any| any.estimate(scene, ray, key, &Always(u), &mut ()).r);
+    found.unwrap_or(f64::NAN)
+}
+
+/// A path survives if the random number is below the survival probability, but not if both are equal, so no path
+/// survives black. With roulette from the first vertex on and a cut after 3 bounces, a path that always survives finds
+/// 4 vertices of weight 1.
+fn at_the_chance(trials: &mut Trials) {
+    let largest = 1.0 - f64::EPSILON / 2.0;
+    let below_half = 0.5 - f64::EPSILON / 4.0;
+    let roulette = Roulette::parse("albedo:0").ok();
+    for (albedo, u, exact) in [
+        (0.0, 0.0, 1.0),
+        (0.0, largest, 1.0),
+        (0.5, 0.0, 4.0),
+        (0.5, below_half, 4.0),
+        (0.5, 0.5, 1.0),
+        (0.5, largest, 1.0),
+        (1.0, largest, 4.0),
+        (1.0, 0.0, 4.0),
+    ] {
+        let scene = hollow([albedo; 3], [1.0; 3]);
+        for entry in ESTIMATORS.iter().filter(|entry| entry.roulette.is_some()) {
+            let options = Options { max_depth: Some(3), roulette, ..Options::default() };
+            let found = sample(entry.name, options, &scene, u);
+            trials.close(format!("rho {albedo}, u {u:?}, {}", entry.name), exact, found, 1e-14);
+        }
+    }
+}
+
+/// One ray per path, and exactly the emission of the surface.
+fn black(trials: &mut Trials) {
+    let scene = hollow([0.0; 3], [3.0, 0.0, 0.5]);
+    for (estimator, kernel) in full_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name))) {
+        for rule in ["albedo:5", "albedo:0", "throughput:0", "never"] {
+            let roulette = Some(rule.to_string());
+            let (estimator, kernel) = (estimator.to_string(), kernel.to_string());
+            let what = format!("{rule}, {estimator}, {kernel}");
+            let arrives = arriving_estimators().any(|name| name == estimator);
+            let spec = Spec { width: 8, height: 6, estimator, kernel, roulette, ..Spec::default() };
+            let outcome = run(&scene, Settings { spp: 4, spec, ..Settings::default() });
+            let others = outcome.film.pixels().iter().filter(|pixel| pixel.mean() != [3.0, 0.0, 0.5]).count();
+            trials.never(&what, "other pixels", others as u64, 48);
+            if arrives {
+                trials.same(format!("{what}: rays"), outcome.counts.paths, outcome.counts.rays);
+            }
+        }
+    }
+}
+
+/// Channels of different albedo share one roulette: each keeps its own mean, Le/(1 - rho).
+fn fair(trials: &mut Trials) {
+    let scene = hollow([0.5, 0.9, 0.2], [1.0, 2.0, 3.0]);
+    let mut bench = Bench::new(trials);
+    bench.widest = [3e-2, 1e-3];
+    for rule in
+        ["never", "albedo:0", "albedo:1", "albedo:3", "albedo:5", "throughput:0", "throughput:5", "constant:0.95"]
+    {
+        bench.roulette = Some(rule.to_string());
+        // Without roulette a path of this albedo ends only at the cut, which removes 1e-18 of the light.
+        bench.max_depth = (rule == "never").then_some(400);
+        bench.each(rule, &scene, arriving_estimators(), &[2.0, 20.0, 3.75]);
+    }
+}
+
+/// Moments of one channel over all samples: mean, variance within the pixels, and number of samples.
+fn moments(film: &Film) -> (f64, f64, f64) {
+    let (mut n, mut sum, mut spread) = (0.0, 0.0, 0.0);
+    for pixel in film.pixels() {
+        n += f64::from(pixel.count);
+        sum += pixel.sum[0];
+        spread += pixel.square[0] - pixel.sum[0] * pixel.sum[0] / f64::from(pixel.count);
+    }
+    (sum / n, spread / (n - film.pixels().len() as f64), n)
+}
+
+/// With roulette from the first vertex on, the number of vertices is geometric: deviation sqrt(rho)/(1 - rho). With
+/// smallpt's rule, five vertices are certain and the rest has the weight rho^5. The kurtosis of a geometric variate, 9
+/// + (1 - rho)^2/rho, gives the standard error of the variance.
+fn spread(trials: &mut Trials) {
+    for (rho, deviation, quick) in [
+        (0.1, 0.351_364_184_463_153_4, 256),
+        (0.5, std::f64::consts::SQRT_2, 256),
+        (0.75, 3.464_101_615_137_754_6, 256),
+        (0.9, 9.486_832_980_505_138, 128),
+        (0.99, 99.498_743_710_661_99, 32),
+        (0.999, 999.499_874_937_460_9, 4),
+    ] {
+        let rho: f64 = rho;
+        let scene = hollow([rho; 3], [1.0; 3]);
+        let spp = trials.times(quick, 64 * quick) as u32;
+        let rho5 = rho * rho * rho * rho * rho;
+        for (rule, weight) in [("albedo:0", 1.0), ("albedo:5", rho5)] {
+            for (estimator, kernel) in
+                arriving_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name)))
+            {
+                let what = format!("rho {rho}, {rule}, {estimator}, {kernel}");
+                let (estimator, kernel) = (estimator.to_string(), kernel.to_string());
+                let roulette = Some(rule.to_string());
+                let spec = Spec { width: 32, height: 32, seed: 22, estimator, kernel, roulette, ..Spec::default() };
+                let (mean, variance, n) = moments(&run(&scene, Settings { spp, spec, ..Settings::default() }).film);
+                let exact = weight * weight * deviation * deviation;
+                let z_mean = (mean - 1.0 / (1.0 - rho)) / (exact / n).sqrt();
+                let z_variance = (variance / exact - 1.0) / ((8.0 + (1.0 - rho) * (1.0 - rho) / rho) / n).sqrt();
+                trials.deviates_below(format!("{what}: mean"), critical(), z_mean);
+                trials.deviates_below(format!("{what}: variance"), critical(), z_variance);
+            }
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! Paths that end at the first vertex, and paths that never end.
+
+use super::walk::scatter;
+use crate::bare_scene::{intersect, searches};
+use crate::estimator::ESTIMATORS;
+use crate::kernel::Spec;
+use crate::math::{Ray, Vec3, dot};
+use crate::rendering::{by_kernel, render};
+use crate::stage::{ANY_CAMERA, MIRROR, ball, named, try_scene};
+use crate::{Case, Trials};
+use std::sync::Arc;
+
+pub(super) const CASES: &[Case] = &[
+    Case { id: "S63", tries: "black walls: their survival is 0, and every path ends at the first", run: black_walls },
+    Case {
+        id: "S64",
+        tries: "1e4 mirror bounces in a sphere of 1e5: the direction keeps its length",
+        run: mirror_chain,
+    },
+];
+
+/// A black room that glows: its radiance is exactly 1, and each path needs one ray only.
+fn black_walls(trials: &mut Trials) {
+    let room = named(
+        "room",
+        "{ sphere = { center = [0.0, 0.0, 0.0], radius = 9.0 } }",
+        "{ diffuse = { albedo = [0.0, 0.0, 0.0] } }",
+        1.0,
+    );
+    let scene = Arc::new(try_scene(&[ANY_CAMERA.to_string(), room]).expect("a right scene"));
+    for estimator in ESTIMATORS {
+        let rules = [None, Some("albedo:0"), Some("throughput:0")].map(|rule| rule.map(ToString::to_string));
+        for roulette in rules.into_iter().filter(|rule| rule.is_none() || estimator.roulette.is_some()) {
+            let spec = Spec { width: 8, height: 6, estimator: estimator.name.into(), roulette, ..Spec::default() };
+            for spec in by_kernel(&spec) {
+                let Some(outcome) = render(trials, &scene, spec.clone(), 4) else { continue };
+                let (counts, spp) = (outcome.counts, f64::from(outcome.spp));
+                let are_one = outcome.film.pixels().iter().all(|pixel| pixel.sum == [spp; 3]);
+                let rule = spec.roulette.as_deref().unwrap_or("its own rule");
+                let variant = format!("{}, {}, roulette by {rule}", spec.estimator, spec.kernel);
+                let found = format!("{} rays for {} paths, {} invalid", counts.rays, counts.paths, counts.invalid);
+                let told = "one ray a path, every pixel 1";
+                trials.holds(variant, told, found, counts.rays == counts.paths && counts.invalid == 0 && are_one);
+            }
+        }
+    }
+}
+
+/// Without renormalising, |d| must stay 1 within 1e-12. With it, as in paths, every chord is as long as the first: 2 r
+/// cos.
+fn mirror_chain(trials: &mut Trials) {
+    let parts = [ANY_CAMERA.to_string(), ball("room", [50.0, 40.8, 81.6], 1e5, MIRROR)];
+    let room = try_scene(&parts).expect("a right scene");
+    for (name, scene) in searches(&room) {
+        for renormalise in [false, true] {
+            let direction = Vec3::new(0.3, -0.2, 0.93).normalized();
+            let mut ray = Ray { origin: Vec3::new(70_000.0, 30_000.0, -10_000.0), direction };
+            let (mut from, mut first, mut bounces) = (None, None, 0);
+            let (mut drift, mut stretch) = (0.0_f64, 0.0_f64);
+            while bounces < 10_000 {
+                let Some(hit) = intersect(&scene, &ray, from) else { break };
+                if bounces > 0 {
+                    stretch = stretch.max((hit.t / *first.get_or_insert(hit.t) - 1.0).abs());
+                }
+                let (next, standpoint) = scatter(&scene, &hit, ray.direction, 0.0);
+                drift = drift.max((dot(next.direction, next.direction).sqrt() - 1.0).abs());
+                ray = if renormalise { Ray { direction: next.direction.normalized(), ..next } } else { next };
+                from = Some(standpoint);
+                bounces += 1;
+            }
+            let how = if renormalise { "renormalised" } else { "as reflected" };
+            let variant = format!("{how}, accelerator {name}");
+            trials.same(format!("{variant}, bounces"), &10_000, &bounces);
+            trials.close(format!("{variant}, ||d| - 1|"), 0.0, drift, 1e-12);
+            if renormalise {
+                trials.close(format!("{variant}, chords"), 0.0, stretch, 1e-11);
+            }
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Output of results: into a folder, or to standard output, which a user may close at any time:
+//! `pathmark list | head -1` is no failure.
+
+use crate::error::{Error, Result, printable};
+use crate::files::create_folder;
+use crate::lock::{Lock, Sharing};
+use serde::Serialize;
+use serde_json::Value;
+use std::io::{ErrorKind, Write};
+use std::path::Path;
+
+/// Creates a folder of results if it is missing, and locks it against other processes as `sharing` says.
+pub(crate) fn lock_folder(out: &Path, sharing: Sharing) -> Result<Lock> {
+    create_folder("out", out)?;
+    Lock::of_folder(out, "out", sharing)
+}
+
+/// A count with its noun: `1 worker`, `2 workers`.
+pub(crate) fn counted(count: usize, thing: &str) -> String {
+    if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
+}
+
+/// Prints a text and a line end. Control characters of names in it are escaped, except the ends of its lines.
+pub(crate) fn print(text: &str) -> Result<()> {
+    print_verbatim(&text.split('\n').map(printable).collect::<Vec<_>>().join("\n"))
+}
+
+/// Prints a text of the program's own, such as a script, and a line end.
+pub(crate) fn print_verbatim(text: &str) -> Result<()> {
+    match writeln!(std::io::stdout().lock(), "{text}") {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Error::system("writing", "standard output", e)),
+        _ => Ok(()),
+    }
+}
+
+/// Prints a value as one line of JSON. Absent values are `null`; NaN and infinities, for which JSON has no numbers, are
+/// the texts "NaN", "inf" and "-inf".
+pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {
+    let failed = |e: serde_json::Error| Error::system("writing", "standard output", e.into());
+    let mut json = serde_json::to_value(value).map_err(failed)?;
+    // TOML keeps NaN and infinities, which JSON turns into null.
+    let named = toml::Value::try_from(value).is_ok_and(|exact| name_odd_numbers(&mut json, &exact));
+    // If nothing has to be replaced, fields keep their order.
+    let line = if named { json.to_string() } else { serde_json::to_string(value).map_err(failed)? };
+    // JSON itself escapes only the first 32 characters. All control characters that are left stand in texts.
+    let escape = |c: char| if c.is_control() { format!("\\u{:04x}", u32::from(c)) } else { String::from(c) };
+    print_verbatim(&line.chars().map(escape).collect::<String>())
+}
+
+/// Replaces nulls that were numbers by texts; returns whether there were any.
+fn name_odd_numbers(json: &mut Value, exact: &toml::Value) -> bool {
+    match (json, exact) {
+        (json @ Value::Null, toml::Value::Float(found)) => {
+            *json = number(*found);
+            true
+        }
+        (Value::Array(values), toml::Value::Array(exact)) => {
+            values.iter_mut().zip(exact).fold(false, |named, (json, exact)| name_odd_numbers(json, exact) | named)
+        }
+        (Value::Object(values), toml::Value::Table(exact)) => exact.iter().fold(false, |named, (field, exact)| {
+            values.get_mut(field).is_some_and(|json| name_odd_numbers(json, exact)) | named
+        }),
+        _ => false,
+    }
+}
+
+/// A number as [`print_json`] prints it, for JSON that is built by hand.
+pub(crate) fn number(value: f64) -> Value {
+    if value.is_finite() { Value::from(value) } else { Value::from(value.to_string()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Serialize)]
+    struct Row {
+        name: &'static str,
+        values: Vec<f64>,
+        absent: Option<f64>,
+        there: Option<f64>,
+    }
+
+    #[test]
+    fn absent_nan_and_infinite_are_told_apart() {
+        let rows = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.5].map(|value| Row {
+            name: "a",
+            values: vec![1.0, value],
+            absent: None,
+            there: Some(value),
+        });
+        let mut json = serde_json::to_value(&rows).unwrap();
+        assert!(name_odd_numbers(&mut json, &toml::Value::try_from(&rows).unwrap()));
+        let found: Vec<_> = json.as_array().unwrap().iter().map(|row| [&row["there"], &row["values"][1]]).collect();
+        let expected = [Value::from("NaN"), Value::from("inf"), Value::from("-inf"), Value::from(0.5)];
+        assert_eq!(found, expected.each_ref().map(|value| [value, value]));
+        assert!(json.as_array().unwrap().iter().all(|row| row["absent"].is_null() && row["name"] == "a"));
+        let mut fine = serde_json::to_value(&rows[3]).unwrap();
+        assert!(!name_odd_numbers(&mut fine, &toml::Value::try_from(&rows[3]).unwrap()));
+    }
+}

@@ -1,0 +1,167 @@
+//! `pathmark check`: the hard cases on this machine, and the costs of guarding against them.
+
+use super::{cases, guards};
+use crate::cases_file;
+use crate::check::{self, Case, Effort, Outcome, SECTIONS};
+use crate::console::Talk;
+use crate::console::output::{lock_folder, print, print_json};
+use crate::error::{Error, InputError, Result};
+use crate::experiment::Progress as _;
+use crate::files::Files;
+use crate::guard_prices::PriceRow;
+use crate::lab::Lab;
+use crate::lock::{Lock, Sharing};
+use crate::report;
+use clap::Args;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// `pathmark check --thorough`
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// Cases by name, as in S11 A6, or by first letter [default: all of them, and the price list of the guards]
+    cases: Vec<String>,
+    /// Try as many random inputs as the catalogue of hard cases specifies: minutes to hours
+    #[arg(long)]
+    thorough: bool,
+    /// Write the cases, the price list of the guards and a page of all results into this folder, beside the results of experiments. An existing price
+    /// list is kept
+    #[arg(long, value_name = "DIR", conflicts_with = "cases")]
+    out: Option<PathBuf>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// A case and its outcome.
+#[derive(Serialize)]
+struct Row<'a> {
+    id: &'static str,
+    tries: &'static str,
+    pass: bool,
+    #[serde(flatten)]
+    outcome: &'a Outcome,
+}
+
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+    let chosen = chosen(&arguments.cases)?;
+    let _lock = arguments.out.as_ref().map(|out| folder_for_results(out)).transpose()?;
+    let effort = if arguments.thorough { Effort::Thorough } else { Effort::Quick };
+    let outcomes = cases::try_all(&chosen, effort, talk)?;
+    let rows: Vec<Row<'_>> = chosen
+        .iter()
+        .zip(&outcomes)
+        .map(|(case, outcome)| Row { id: case.id, tries: case.tries, pass: outcome.passed(), outcome })
+        .collect();
+    // Guards are timed alone, only if no cases are named, and once for each folder.
+    let are_priced = arguments.out.as_ref().is_some_and(|out| guards::are_in(out));
+    let prices = if arguments.cases.is_empty() && !are_priced { guards::measure(talk) } else { Vec::new() };
+    if arguments.json {
+        print_json(&serde_json::json!({ "cases": rows, "guards": prices }))?;
+    } else {
+        print(&table(&rows, !arguments.cases.is_empty()))?;
+        if !prices.is_empty() {
+            print(&price_list(&prices))?;
+        }
+    }
+    if let Some(out) = &arguments.out {
+        cases::write(out, &chosen, &outcomes)?;
+        if !are_priced {
+            guards::write(out, lab, &prices)?;
+        }
+        let written = format!("report in {}", report::write(lab, out)?.display());
+        // Standard output holds one JSON object then.
+        if arguments.json {
+            talk.note(&written);
+        } else {
+            print(&written)?;
+        }
+    }
+    let failed: Vec<&str> = rows.iter().filter(|row| !row.pass).map(|row| row.id).collect();
+    if failed.is_empty() { Ok(()) } else { Err(Error::Check(format!("hard cases {}", failed.join(", ")))) }
+}
+
+/// Locks the folder of results if the cases, the price list and the page may be written into it. `reproduce` may have
+/// left the price list there already.
+fn folder_for_results(out: &Path) -> Result<Lock> {
+    let mut files = Files::default();
+    if !guards::are_in(out) || guards::read(out)?.is_empty() {
+        guards::claim(out, &mut files)?;
+    }
+    cases_file::claim(out, &mut files)?;
+    report::claim("out", out, &mut files)?;
+    lock_folder(out, Sharing::Shared)
+}
+
+/// The cases of these names or first letters, in the table's order.
+fn chosen(names: &[String]) -> Result<Vec<&'static Case>> {
+    for name in names {
+        if !check::cases().any(|case| fits(case, name)) {
+            let known: Vec<&str> = check::cases().map(|case| case.id).collect();
+            let error = InputError::new("case", name, "there is no such case");
+            return Err(error.allowed(known.join(", ")).into());
+        }
+    }
+    Ok(check::cases().filter(|case| names.is_empty() || names.iter().any(|name| fits(case, name))).collect())
+}
+
+fn fits(case: &Case, name: &str) -> bool {
+    case.id == name || (name.len() == 1 && case.id.starts_with(name))
+}
+
+/// The printed table: a line for each case, its failed or skipped trials, and with `in_full` all trials.
+fn table(rows: &[Row<'_>], in_full: bool) -> String {
+    let mut lines = Vec::new();
+    for section in SECTIONS {
+        let ids: Vec<&str> = section.cases.iter().copied().flatten().map(|case| case.id).collect();
+        let here: Vec<&Row<'_>> = rows.iter().filter(|row| ids.contains(&row.id)).collect();
+        if !here.is_empty() {
+            lines.push(format!("{}\n", section.title));
+        }
+        for row in here {
+            lines.push(line(row));
+            for trial in row.outcome.trials.iter().filter(|trial| in_full || !trial.passed) {
+                let mark = if trial.passed { "    " } else { "  ! " };
+                lines.push(format!("{mark}{}: expected {}, found {}", trial.variant, trial.expected, trial.found));
+            }
+            lines.extend(row.outcome.skipped.iter().map(|why| format!("    not tried: {why}")));
+        }
+        lines.push(String::new());
+    }
+    let trials: usize = rows.iter().map(|row| row.outcome.trials.len()).sum();
+    let (failed, skipped) = (
+        rows.iter().filter(|row| !row.pass).count(),
+        rows.iter().filter(|row| row.outcome.trials.is_empty() && row.pass).count(),
+    );
+    lines.push(format!("{} cases, {trials} trials: {failed} failed, {skipped} not tried", rows.len()));
+    lines.join("\n")
+}
+
+/// Name, verdict and subject of a case, and the expected and found result of a single trial.
+fn line(row: &Row<'_>) -> String {
+    let verdict = match (row.pass, row.outcome.trials.is_empty()) {
+        (true, false) => "pass",
+        (true, true) => "skip",
+        (false, _) => "FAIL",
+    };
+    let what = match row.outcome.trials.as_slice() {
+        [trial] => format!("expected {}, found {}", trial.expected, trial.found),
+        trials => format!("{} trials", trials.len()),
+    };
+    format!("  {:4} {verdict}  {}: {what}", row.id, row.tries)
+}
+
+/// The guards, two lines each.
+fn price_list(rows: &[PriceRow]) -> String {
+    let mut lines = vec!["\nCost of the guards, and errors with and without them (95 % intervals)\n".to_string()];
+    for row in rows {
+        let times = match (row.time_ratio, row.time_ratio_low, row.time_ratio_high) {
+            (Some(ratio), Some(low), Some(high)) => format!("{ratio:.2} times the time ({low:.2} to {high:.2})"),
+            _ => "not timed".to_string(),
+        };
+        lines.push(format!("  {}: {} instead of {}, {times}", row.guard, row.with, row.without));
+        lines.push(format!("    {}: {:.3e} instead of {:.3e}", row.error, row.error_with, row.error_without));
+    }
+    lines.join("\n")
+}

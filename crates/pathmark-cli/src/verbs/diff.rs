@@ -1,0 +1,239 @@
+//! `pathmark diff OLD NEW`: which cells got slower, and which are lost?
+
+use super::run::talk_of;
+use crate::console::Talk;
+use crate::console::output::{counted, number, print, print_json};
+use crate::error::{Error, Result, printable};
+use crate::experiment::{
+    Across, CellDiff, Change, Compared, CountDiff, CountDiffs, Diff, FailedCell, Lost, Progress as _, count_diff, diff,
+    parse_share,
+};
+use clap::{Args, ValueEnum};
+use serde_json::{Value, json};
+use std::path::PathBuf;
+
+/// `pathmark diff before/thread-scaling after/thread-scaling --fail-above 3%`
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The old measurement: the folder of an experiment, a folder of experiments, or a file of rows
+    old: PathBuf,
+    /// The new measurement, likewise
+    new: PathBuf,
+    /// Exit with code 1 if a cell is certainly slower by more than this; smaller changes count as the same
+    #[arg(long, value_name = "SHARE", default_value = "2%", allow_hyphen_values = true)]
+    fail_above: String,
+    /// Whether undecided cells make the command fail
+    #[arg(long, value_enum, default_value_t = Undecided::Pass)]
+    undecided: Undecided,
+    /// Compare counts instead of times: jobs, paths, rays, tests of boxes and primitives, and instructions after
+    /// `run --count-instructions`. Counts have no noise
+    #[arg(long)]
+    counts: bool,
+    #[command(flatten)]
+    across: AcrossOptions,
+    /// Print the comparison as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Args)]
+struct AcrossOptions {
+    /// Compare even if the measurements are from two machines
+    #[arg(long)]
+    across_machines: bool,
+    /// Compare even if the images of the two builds differ in some bits
+    #[arg(long)]
+    across_revisions: bool,
+}
+
+/// How undecided cells count.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Undecided {
+    /// They do not make the command fail
+    Pass,
+    /// They make it fail
+    Fail,
+}
+
+/// The largest number of lost cells that an error names; the table names all.
+const MOST_TOLD: usize = 20;
+
+pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
+    let limit = parse_share("fail-above", &arguments.fail_above)?;
+    if arguments.counts {
+        return counts(arguments, limit, talk);
+    }
+    let AcrossOptions { across_machines: machines, across_revisions: revisions } = arguments.across;
+    let across = Across { machines, revisions };
+    let found = diff(&arguments.old, &arguments.new, limit, across)?;
+    let all = || found.experiments.iter().flat_map(|(_, diff)| &diff.cells);
+    let count = |change: Change| all().filter(|cell| cell.change == change).count();
+    if arguments.json {
+        print_json(&object(&found, limit, diff_object))?;
+    } else {
+        print(&by_experiment(&found, table).join("\n"))?;
+        let counts = [Change::Slower, Change::Faster, Change::Same, Change::Undecided]
+            .map(|change| format!("{} {}", count(change), change.name()));
+        let percent = 100.0 * limit;
+        print(&format!("{}; the limit between same and slower is {percent} %", counts.join(", ")))?;
+    }
+    for (name, diff) in &found.experiments {
+        remark(name, diff, talk);
+    }
+    let mut problems = losses(&found, |diff| &diff.lost, talk);
+    let (slower, undecided) = (count(Change::Slower), count(Change::Undecided));
+    if slower > 0 {
+        problems.push(format!("{} got slower by more than {} %", counted(slower, "cell"), 100.0 * limit));
+    }
+    if undecided > 0 && arguments.undecided == Undecided::Fail {
+        problems.push(format!("{} undecided: more repetitions are needed", counted(undecided, "cell")));
+    }
+    failed(&problems)
+}
+
+/// Compares counts instead of times.
+fn counts(arguments: &Arguments, limit: f64, talk: &Talk) -> Result<()> {
+    let found = count_diff(&arguments.old, &arguments.new)?;
+    let all = || found.experiments.iter().flat_map(|(_, diffs)| &diffs.changed);
+    if arguments.json {
+        print_json(&object(&found, limit, |diffs| {
+            let CountDiffs { changed, compared, lost } = diffs;
+            json!({ "compared": compared, "changed": changed, "missing": lost.missing, "failed": lost.failed })
+        }))?;
+    } else {
+        let line = |count: &CountDiff| {
+            let CountDiff { cell, column, old, new } = count;
+            format!("{:>8.4} {column:<16} {old:>12} {new:>12}  {}", count.ratio(), printable(cell))
+        };
+        let lines = by_experiment(&found, |diffs| diffs.changed.iter().map(line).collect());
+        let compared = found.experiments.iter().map(|(_, diffs)| diffs.compared).sum();
+        let end = format!("{} of {} changed", all().count(), counted(compared, "count"));
+        print(&lines.into_iter().chain([end]).collect::<Vec<_>>().join("\n"))?;
+    }
+    let mut problems = losses(&found, |diffs| &diffs.lost, talk);
+    let above = all().filter(|count| count.ratio() > 1.0 + limit).count();
+    if above > 0 {
+        problems.push(format!("{} grew by more than {} %", counted(above, "count"), 100.0 * limit));
+    }
+    failed(&problems)
+}
+
+fn failed(problems: &[String]) -> Result<()> {
+    if problems.is_empty() { Ok(()) } else { Err(Error::Check(problems.join("; "))) }
+}
+
+/// The lines of all experiments, below their names if there are several.
+fn by_experiment<T>(found: &Compared<T>, lines: impl Fn(&T) -> Vec<String>) -> Vec<String> {
+    let headed = found.experiments.iter().flat_map(|(name, of)| {
+        let head = Some(printable(name).into_owned()).filter(|name| !name.is_empty());
+        head.into_iter().chain(lines(of))
+    });
+    headed.collect()
+}
+
+/// Notes the experiments that only the new measurement has, and returns in words what only the old one has.
+fn losses<T>(found: &Compared<T>, lost: impl Fn(&T) -> &Lost, talk: &Talk) -> Vec<String> {
+    let [only_old, only_new] = &found.alone;
+    for name in only_new {
+        talk.note(&format!("experiment {}: only the new measurement has it", printable(name)));
+    }
+    let place = |name: &str, cell: &str| {
+        let of = if name.is_empty() { String::new() } else { format!("{} ", printable(name)) };
+        format!("{of}{}", printable(cell))
+    };
+    let all = || found.experiments.iter().map(|(name, of)| (name, lost(of)));
+    let missing: Vec<String> =
+        all().flat_map(|(name, lost)| lost.missing.iter().map(|cell| place(name, cell))).collect();
+    let with_error = all().flat_map(|(name, lost)| {
+        lost.failed.iter().map(|FailedCell { cell, failed, rows, error }| {
+            format!("{} ({failed} of {}: {})", place(name, cell), counted(*rows, "row"), printable(error))
+        })
+    });
+    let told = |names: Vec<String>, thing: &str, lack: &str| {
+        let rest = names.len().saturating_sub(MOST_TOLD);
+        let more = (rest > 0).then(|| format!("{rest} more"));
+        let named: Vec<String> = names.iter().take(MOST_TOLD).cloned().chain(more).collect();
+        (!names.is_empty())
+            .then(|| format!("{} {lack} in the new measurement: {}", counted(names.len(), thing), named.join(", ")))
+    };
+    let only_old = only_old.iter().map(|name| printable(name).into_owned()).collect();
+    [
+        told(only_old, "experiment", "missing"),
+        told(missing, "cell", "missing"),
+        told(with_error.collect(), "cell", "failed"),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// Prints warnings and notes about the comparison of an experiment.
+fn remark(name: &str, found: &Diff, talk: &Talk) {
+    let of = if name.is_empty() { String::new() } else { format!(" ({})", printable(name)) };
+    if !found.paired {
+        talk.note(&format!(
+            "warning: not measured in turns with each other, so a change of the machine looks like a change of the program (run --against){of}",
+        ));
+    }
+    if found.stopped_by_times {
+        talk.note(&format!(
+            "warning: the repetitions of a cell depended on its times (run --until), so the intervals are too narrow{of}",
+        ));
+    }
+    let [old, new] = found.unmatched;
+    if old + new > 0 {
+        talk.note(&format!(
+            "{} of the old and {} of the new have no counterpart{of}",
+            counted(old, "cell"),
+            counted(new, "cell")
+        ));
+    }
+    talk_of(&found.doubts, talk);
+}
+
+fn table(found: &Diff) -> Vec<String> {
+    let head = format!("{:>8} {:>16} {:<9}  {:>9}  {:>9}  cell", "new/old", "interval", "change", "old", "new");
+    let line = |cell: &CellDiff| {
+        let interval = cell.interval.map_or_else(|| "-".to_string(), |i| format!("{:.3} to {:.3}", i.low, i.high));
+        let CellDiff { ratio, old_s, new_s, change, .. } = cell;
+        let (change, cell) = (change.name(), printable(&cell.cell));
+        format!("{ratio:>8.3} {interval:>16} {change:<9}  {:>6.1} ms  {:>6.1} ms  {cell}", 1e3 * old_s, 1e3 * new_s)
+    };
+    let lost =
+        |cell: &str, how: &str| format!("{:>8} {:>16} {how:<9}  {:>9}  {:>9}  {}", "-", "-", "-", "-", printable(cell));
+    let Lost { missing, failed } = &found.lost;
+    let missing = missing.iter().map(|cell| lost(cell, "missing"));
+    let failed = failed.iter().map(|cell| lost(&cell.cell, "failed"));
+    std::iter::once(head).chain(found.cells.iter().map(line)).chain(missing).chain(failed).collect()
+}
+
+fn diff_object(found: &Diff) -> Value {
+    let cells = found.cells.iter().map(|cell| {
+        json!({
+            "cell": cell.cell, "change": cell.change, "ratio": number(cell.ratio), "interval": cell.interval,
+            "old_s": number(cell.old_s), "new_s": number(cell.new_s), "repetitions": cell.repetitions,
+        })
+    });
+    json!({
+        "paired": found.paired, "sequential": found.sequential, "doubted_rows": found.doubts.count(),
+        "unmatched": found.unmatched, "cells": cells.collect::<Vec<_>>(),
+        "missing": found.lost.missing, "failed": found.lost.failed,
+    })
+}
+
+/// The comparison of one experiment as one object; that of several with the name of each.
+fn object<T>(found: &Compared<T>, limit: f64, of: impl Fn(&T) -> Value) -> Value {
+    let with = |mut object: Value, key: &str, value: Value| {
+        object[key] = value;
+        object
+    };
+    match found.experiments.as_slice() {
+        [(name, only)] if name.is_empty() => with(of(only), "limit", json!(limit)),
+        several => {
+            let named = several.iter().map(|(name, each)| with(of(each), "experiment", json!(name)));
+            let [only_old, only_new] = &found.alone;
+            let experiments: Vec<Value> = named.collect();
+            json!({ "limit": limit, "experiments": experiments, "only_old": only_old, "only_new": only_new })
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! `mpiexec -n 2 pathmark message-costs`: the costs of MPI messages on this machine.
+
+use crate::cluster::{Cluster, MessageCost, MessageCosts};
+use crate::console::output::{print, print_json};
+use crate::error::Result;
+use clap::Args;
+use std::env;
+use std::path::PathBuf;
+
+/// `mpiexec -n 2 pathmark message-costs`
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// MPI library: auto, or the path of one [default: auto, or `PATHMARK_MPI`]
+    #[arg(long, value_name = "auto|FILE")]
+    mpi: Option<PathBuf>,
+    /// Print the costs as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// The library that the user names in the option or the environment; `None` if the program is to find one.
+pub(super) fn library(option: Option<&PathBuf>) -> Option<PathBuf> {
+    let named = option.cloned().or_else(|| env::var_os("PATHMARK_MPI").map(PathBuf::from));
+    named.filter(|path| path.as_os_str() != "auto")
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<()> {
+    let cluster = Cluster::begin(library(arguments.mpi.as_ref()).as_deref())?;
+    let Some(told) = cluster.message_costs()? else { return Ok(()) };
+    if arguments.json {
+        return print_json(&told);
+    }
+    let MessageCosts { ranks, mpi, costs } = told;
+    print(&format!("{ranks} ranks of {mpi}; microseconds, medians with 95 % intervals"))?;
+    print(&format!("{:>10} {:>22} {:>11}  operation, while rank 0", "median", "interval", "repetitions"))?;
+    for MessageCost { operation, rank_0, repetitions, median_s, low_s, high_s } in costs {
+        let [median, low, high] = [median_s, low_s, high_s].map(|seconds| 1e6 * seconds);
+        let interval = format!("{low:.2} to {high:.2}");
+        print(&format!("{median:>10.2} {interval:>22} {repetitions:>11}  {operation}, {rank_0}"))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,64 @@
+//! `pathmark new experiment|scene NAME`: a commented file to start from.
+
+use crate::console::output::print;
+use crate::error::{Error, InputError, Result};
+use crate::shell;
+use clap::{Args, ValueEnum};
+use std::fs::OpenOptions;
+use std::io::{ErrorKind, Write};
+use std::path::PathBuf;
+
+/// `pathmark new experiment mine`
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// Kind of file
+    kind: Kind,
+    /// Its name or path; `.toml` is added if it is missing
+    name: PathBuf,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    Experiment,
+    Scene,
+}
+
+impl Kind {
+    fn text(self) -> &'static str {
+        match self {
+            Self::Experiment => include_str!("../../assets/starter-experiment.toml"),
+            Self::Scene => include_str!("../../assets/starter-scene.toml"),
+        }
+    }
+
+    fn verb(self) -> &'static str {
+        match self {
+            Self::Experiment => "run",
+            Self::Scene => "render",
+        }
+    }
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<()> {
+    if arguments.name.file_name().is_none() || arguments.name.as_os_str().as_encoded_bytes().ends_with(b"/") {
+        return Err(InputError::new("name", arguments.name.display().to_string(), "is not the name of a file").into());
+    }
+    let mut path = arguments.name.clone();
+    if path.extension().is_none_or(|ending| ending != "toml") {
+        path.as_mut_os_string().push(".toml");
+    }
+    let shown = path.display().to_string();
+    // An existing file is never replaced.
+    let mut file = OpenOptions::new().write(true).create_new(true).open(&path).map_err(|e| {
+        let problem = match e.kind() {
+            ErrorKind::AlreadyExists => "already exists",
+            ErrorKind::NotFound => "its folder does not exist",
+            ErrorKind::NotADirectory => "a part of the path is not a directory",
+            ErrorKind::InvalidFilename => "the name is too long",
+            _ => return Error::system("creating", &path, e),
+        };
+        InputError::new("name", &shown, problem).allowed("a new name in a folder that exists").into()
+    })?;
+    file.write_all(arguments.kind.text().as_bytes()).map_err(|e| Error::system("writing", &path, e))?;
+    print(&format!("created {shown}; edit it, then run: {}", shell::command([arguments.kind.verb(), &shown])))
+}

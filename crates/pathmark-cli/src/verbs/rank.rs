@@ -1,0 +1,108 @@
+//! `pathmark rank DIR`: which schedules can be told apart?
+
+use super::letters::letters;
+use super::run::talk_of;
+use crate::console::Talk;
+use crate::console::output::{counted, number, print, print_json};
+use crate::error::{InputError, Result, printable};
+use crate::experiment::{ImageRanking, Place, Progress as _, Ranking, ranking};
+use crate::lab::Lab;
+use clap::Args;
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// `pathmark rank out/thread-scaling --filter threads=2`
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// Folder of an experiment: `out/thread-scaling`
+    folder: PathBuf,
+    /// Rank only cells in which AXIS has one of the values; may be given several times
+    #[arg(long, value_name = "AXIS=VALUES")]
+    filter: Vec<String>,
+    /// Print the ranking as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+    if arguments.folder.exists() && !arguments.folder.is_dir() {
+        let folder = arguments.folder.display().to_string();
+        return Err(InputError::new("folder", folder, "is not a folder").allowed("as in out/thread-scaling").into());
+    }
+    let found = ranking(lab, &arguments.folder, &arguments.filter)?;
+    if arguments.json {
+        print_json(&object(&found))?;
+    } else {
+        let tables: Vec<String> = found.images.iter().map(table).collect();
+        print(&tables.join("\n\n"))?;
+        print(
+            "\nSchedules that share a letter cannot be told apart; all other orders hold together with 95 % confidence.",
+        )?;
+    }
+    if found.images.iter().any(|image| image.part[1] > 1) {
+        talk.note("schedules of different parts were never measured in one repetition, so each part is ranked apart");
+    }
+    if !found.without_time.is_empty() {
+        let names: Vec<_> = found.without_time.iter().map(|cell| printable(cell)).collect();
+        talk.note(&format!(
+            "{} not ranked, because no row has a time: {}",
+            counted(names.len(), "cell"),
+            names.join(", ")
+        ));
+    }
+    let most = found.images.iter().flat_map(|image| &image.places).map(|place| place.repetitions).max().unwrap_or(0);
+    let least = found.least_repetitions as usize;
+    if most < least {
+        talk.note(&format!(
+            "{} cannot tell any two schedules apart: it takes {least} (run --repetitions {least}), or fewer schedules (--filter)",
+            counted(most, "repetition")
+        ));
+    }
+    talk_of(&found.doubts, talk);
+    Ok(())
+}
+
+fn table(image: &ImageRanking) -> String {
+    let width = image.places.iter().map(|place| letters(&place.groups).len()).max().unwrap_or(0).max("groups".len());
+    let head = format!("{:>8} {:>16} {:>11}  {:width$}  schedule", "ratio", "interval", "median", "groups");
+    let line = |place: &Place| {
+        let interval = place.interval.map_or_else(|| "-".to_string(), |i| format!("{:.3} to {:.3}", i.low, i.high));
+        let ratio = place.ratio.map_or_else(|| "-".to_string(), |ratio| format!("{ratio:.3}"));
+        let (median_ms, schedule) = (1e3 * place.median_s, printable(&place.schedule));
+        format!("{ratio:>8} {interval:>16} {median_ms:>8.1} ms  {:width$}  {schedule}", letters(&place.groups))
+    };
+    let ImageRanking { fastest, compared, places, part: [part, parts], .. } = image;
+    let of = if *compared < places.len() {
+        format!("{compared} (the matrix of the others has fewer repetitions)")
+    } else {
+        "them".to_string()
+    };
+    let fastest = match (*compared, fastest.len()) {
+        _ if places.len() == 1 => "no other schedule was measured with it".to_string(),
+        (0 | 1, _) => "too few schedules have all repetitions to determine the fastest".to_string(),
+        (_, 0) => format!("each of {of} is slower than another one"),
+        (all, left) if left == all => format!("any of {of} may be the fastest"),
+        _ => format!("with 95 % confidence, the fastest of {of} is among: {}", printable(&fastest.join(", "))),
+    };
+    let of_part = if *parts > 1 { format!(", part {part} of {parts}") } else { String::new() };
+    let lines =
+        [format!("{}{of_part}", printable(&image.image)), head].into_iter().chain(image.places.iter().map(line));
+    lines.chain([fastest]).collect::<Vec<_>>().join("\n")
+}
+
+fn object(found: &Ranking) -> Value {
+    let image = |image: &ImageRanking| {
+        let place = |place: &Place| {
+            json!({
+                "schedule": place.schedule, "ratio": place.ratio.map(number), "interval": place.interval, "groups": place.groups,
+                "median_s": number(place.median_s), "repetitions": place.repetitions,
+            })
+        };
+        json!({ "image": image.image, "part": image.part, "fastest": image.fastest, "compared": image.compared, "places": image.places.iter().map(place).collect::<Vec<_>>() })
+    };
+    json!({
+        "images": found.images.iter().map(image).collect::<Vec<_>>(), "least_repetitions": found.least_repetitions,
+        "doubted_rows": found.doubts.count(), "without_time": found.without_time,
+    })
+}

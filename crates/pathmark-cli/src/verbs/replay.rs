@@ -1,0 +1,295 @@
+//! `pathmark replay SCENE`: one sample's path, bounce by bounce.
+
+use super::axes::{What, no_paths};
+use crate::console::output::{self, print, print_json};
+use crate::error::{Error, InputError, Result};
+use crate::kernel::{self, Choice, Event, Inspector, PathLog, Spec};
+use crate::lab::Lab;
+use crate::math::{Rgb, Vec3};
+use crate::measure::{AXES, InvalidSample, LARGEST_SPP, Settings};
+use crate::plot::number;
+use crate::scene::Scene;
+use crate::shell;
+use crate::simd::Precision;
+use clap::Args;
+use serde_json::{Value, json};
+use std::sync::Arc;
+
+/// `pathmark replay cornell --pixel 300,250 --sample 3`
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// A scene of `pathmark list scenes`, or the path of a .toml file
+    scene: String,
+    /// Column and row, from the top left
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pixel: String,
+    /// Number of the pixel's sample, from 0
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    sample: u32,
+    /// Seed of the image
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    #[command(flatten)]
+    what: What,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
+    let sample = arguments.sample;
+    if sample >= LARGEST_SPP {
+        let problem = "exceeds the largest sample number";
+        let allowed = format!("0 to {}", LARGEST_SPP - 1);
+        return Err(InputError::new("sample", sample.to_string(), problem).allowed(allowed).into());
+    }
+    // Any number of samples that the estimator allows will do: only the names are used.
+    let mut settings = arguments.what.settings(lab, &arguments.scene, 1, arguments.seed)?;
+    let estimator = lab.estimators().find(|entry| entry.name == settings.spec.estimator);
+    settings.spp = estimator.map_or(1, |entry| entry.spp_multiple);
+    let setup = lab.prepare(settings)?;
+    let Some((scene, choice)) = setup.scene() else { return Err(no_paths(&arguments.scene)) };
+    let spec = &setup.settings().spec;
+    let (x, y) = pixel(&arguments.pixel, spec)?;
+
+    let (given, counts) = kernel::one_sample(&*kernel::construct(scene, choice)?, [x, y], sample);
+    let is_valid = counts.invalid == 0;
+    let precision = choice.precision();
+    // Lanes keep no log, and only lanes have other precisions.
+    let path = if precision == Precision::F64 { Some(path(scene, choice, (x, y, sample), given)?) } else { None };
+    let radiance = path.as_ref().map_or(given, |(_, radiance)| radiance.channels());
+    if arguments.json {
+        let events = path.map(|(log, _)| log.events.iter().map(|event| object(scene, event)).collect::<Vec<Value>>());
+        return print_json(&json!({
+            "scene": scene.name, "width": spec.width, "height": spec.height, "seed": spec.seed,
+            "estimator": spec.estimator, "sampler": spec.sampler, "max_depth": choice.depth(),
+            "camera_rays": choice.camera_rays(),
+            "roulette": choice.roulette().map(|rule| rule.to_string()), "precision": precision.name(),
+            "pixel": [x, y], "sample": sample, "rays": counts.rays, "valid": is_valid,
+            "radiance": radiance.map(output::number), "events": events,
+        }));
+    }
+    let Spec { width, height, seed, estimator, .. } = spec;
+    let what = path.map_or_else(
+        || format!("{} is rendered by SIMD lanes only, which cannot report the events of a path.", precision.name()),
+        |(log, _)| table(&lines(scene, &log.events)),
+    );
+    let [r, g, b] = radiance;
+    print(&format!(
+        "{}, {width}x{height}, {estimator}, seed {seed}: pixel {x},{y}, sample {sample}\n\n{what}\n\nradiance {r} {g} {b}\n{}",
+        scene.name,
+        if is_valid {
+            "The image receives this radiance, bit for bit."
+        } else {
+            "This radiance is invalid: the image receives nothing, and counts an invalid sample."
+        },
+    ))
+}
+
+/// The command that replays a sample of an image, with every option that changes the sample.
+pub(super) fn command(scene: &str, settings: &Settings, at: InvalidSample) -> String {
+    let axes = AXES.iter().filter(|axis| axis.changes_image && (!axis.about.is_empty() || axis.name == "seed"));
+    let values = axes.map(|axis| (axis.name, axis.show(settings))).filter(|(_, value)| !value.is_empty());
+    let options = values.flat_map(|(name, value)| [format!("--{name}"), value]);
+    let place = ["--pixel".to_string(), format!("{},{}", at.x, at.y), "--sample".to_string(), at.sample.to_string()];
+    shell::command(["replay".to_string(), scene.to_string()].into_iter().chain(options).chain(place))
+}
+
+fn pixel(text: &str, spec: &Spec) -> Result<(u32, u32)> {
+    let parsed = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
+    let inside = parsed.filter(|(x, y)| *x < spec.width && *y < spec.height);
+    inside.ok_or_else(|| {
+        let problem = if parsed.is_some() { "is outside the image" } else { "is not a pixel" };
+        let allowed = format!("X,Y from 0,0 to {},{}", spec.width - 1, spec.height - 1);
+        InputError::new("pixel", text, problem).allowed(allowed).into()
+    })
+}
+
+/// Traces the path again with a log, and checks that its radiance equals the kernel's bit for bit.
+fn path(scene: &Arc<Scene>, choice: &Choice, at: (u32, u32, u32), given: [f64; 3]) -> Result<(PathLog, Rgb)> {
+    let mut log = PathLog::default();
+    let radiance = Inspector::new(scene, choice)?.estimate(at.0, at.1, at.2, &mut log);
+    let expected = if radiance.is_valid_radiance() { radiance } else { Rgb::BLACK };
+    if given.map(f64::to_bits) == expected.channels().map(f64::to_bits) {
+        return Ok((log, radiance));
+    }
+    Err(Error::Check(format!("the path gives {radiance:?}, but the image receives {given:?}")))
+}
+
+fn side(inside: bool) -> &'static str {
+    if inside { "inside" } else { "outside" }
+}
+
+fn name(scene: &Scene, object: u32) -> &str {
+    scene.objects.get(object as usize).map_or("", |object| &object.name)
+}
+
+fn object(scene: &Scene, event: &Event) -> Value {
+    let numbers = |values: [f64; 3]| values.map(output::number);
+    let vector = |v: Vec3| numbers([v.x, v.y, v.z]);
+    match *event {
+        Event::Surface { bounces, origin, hit, throughput } => json!({
+            "event": "surface", "bounces": bounces, "object": name(scene, hit.object), "primitive": hit.primitive,
+            "side": side(hit.inside), "distance": output::number(hit.t), "origin": vector(origin), "point": vector(hit.point),
+            "normal": vector(hit.normal), "throughput": numbers(throughput.channels()),
+        }),
+        Event::Fog { bounces, origin, point, distance, throughput } => json!({
+            "event": "fog", "bounces": bounces, "distance": output::number(distance), "origin": vector(origin),
+            "point": vector(point), "throughput": numbers(throughput.channels()),
+        }),
+        Event::Light { bounces, radiance } => {
+            json!({ "event": "light", "bounces": bounces, "radiance": numbers(radiance.channels()) })
+        }
+        Event::Split { bounces } => json!({ "event": "split", "bounces": bounces }),
+        Event::Escaped => json!({ "event": "escaped" }),
+        Event::Truncated => json!({ "event": "truncated" }),
+        Event::Roulette => json!({ "event": "roulette" }),
+        Event::Ended { bounces } => json!({ "event": "ended", "bounces": bounces }),
+    }
+}
+
+/// A line of the table: bounces, what, distance, point, throughput, light.
+type Line = [String; 6];
+
+fn triple(values: [f64; 3]) -> String {
+    values.map(|value| format!("{:>10}", number::short(value, 5))).join(" ")
+}
+
+fn lines(scene: &Scene, events: &[Event]) -> Vec<Line> {
+    let mut lines: Vec<Line> = Vec::new();
+    let mut why = "no further ray";
+    let mut fresh_surface = false;
+    // The first ray of the path comes before any other camera ray.
+    let mut has_ended = false;
+    let word = |bounces: u16, text: String| -> Line {
+        [bounces.to_string(), text, String::new(), String::new(), String::new(), String::new()]
+    };
+    for event in events {
+        let stands_on_surface = std::mem::take(&mut fresh_surface);
+        match *event {
+            Event::Surface { bounces, hit, throughput, .. } => {
+                let what = format!("{}, primitive {}, {}", name(scene, hit.object), hit.primitive, side(hit.inside));
+                let point = triple([hit.point.x, hit.point.y, hit.point.z]);
+                let (distance, throughput) = (number::short(hit.t, 6), triple(throughput.channels()));
+                lines.push([bounces.to_string(), what, distance, point, throughput, String::new()]);
+                fresh_surface = true;
+            }
+            Event::Fog { bounces, point, distance, throughput, .. } => {
+                let (point, throughput) = (triple([point.x, point.y, point.z]), triple(throughput.channels()));
+                let distance = number::short(distance, 6);
+                lines.push([
+                    bounces.to_string(),
+                    "scattered by fog".into(),
+                    distance,
+                    point,
+                    throughput,
+                    String::new(),
+                ]);
+            }
+            Event::Light { radiance, .. } if radiance.is_black() => {}
+            // The light that a surface emits is logged right after the hit.
+            Event::Light { radiance, .. } if stands_on_surface => {
+                if let Some(line) = lines.last_mut() {
+                    line[5] = triple(radiance.channels());
+                }
+            }
+            Event::Light { bounces, radiance } => {
+                let is_seen_besides = has_ended && bounces == 0;
+                let mut line = word(bounces, if is_seen_besides { "other camera rays" } else { "light" }.into());
+                line[5] = triple(radiance.channels());
+                lines.push(line);
+            }
+            Event::Split { bounces } => lines.push(word(bounces, "splits: the other branch comes later".into())),
+            Event::Escaped => why = "hit nothing",
+            Event::Truncated => why = "cut at the bounce limit",
+            Event::Roulette => why = "Russian roulette",
+            Event::Ended { bounces } => {
+                lines.push(word(bounces, format!("ends: {why}")));
+                why = "no further ray";
+                has_ended = true;
+            }
+        }
+    }
+    lines
+}
+
+fn table(lines: &[Line]) -> String {
+    let heads = ["bounces", "what", "distance", "point", "throughput", "light added"].map(String::from);
+    let all = || std::iter::once(&heads).chain(lines);
+    let widths: [usize; 6] =
+        std::array::from_fn(|column| all().map(|line| line[column].chars().count()).max().unwrap_or(0));
+    let row = |line: &Line| {
+        let cells: Vec<String> = line.iter().zip(widths).map(|(cell, width)| format!("{cell:width$}")).collect();
+        cells.join("  ").trim_end().to_string()
+    };
+    all().map(row).collect::<Vec<_>>().join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Replay {
+        #[command(flatten)]
+        arguments: Arguments,
+    }
+
+    /// The arguments that the program reads from a command.
+    fn read(command: &str) -> Arguments {
+        let (_, words) = command.split_once(' ').expect("the program's name");
+        Replay::try_parse_from(words.split(' ')).expect("a command that the program takes").arguments
+    }
+
+    /// Changes each axis that changes the image.
+    #[test]
+    fn a_told_command_is_of_the_same_sample_on_every_axis() {
+        let base = || Spec { width: 8, height: 6, estimator: "bsdf".into(), ..Spec::default() };
+        // A new axis must be added to the list below, unless it changes no sample, like the last four here. `replay` shows
+        // samples before any clamp.
+        let Spec {
+            width: _,
+            height: _,
+            seed: _,
+            estimator: _,
+            sampler: _,
+            precision: _,
+            max_depth: _,
+            camera_rays: _,
+            roulette: _,
+            filter: _,
+            epsilon: _,
+            clamp: _,
+            kernel: _,
+            simd: _,
+            effects: _,
+            accelerator: _,
+        } = base();
+        let others = [
+            Spec { width: 9, ..base() },
+            Spec { height: 7, ..base() },
+            Spec { seed: 2, ..base() },
+            Spec { estimator: "mis".into(), ..base() },
+            Spec { sampler: "sobol".into(), ..base() },
+            Spec { precision: "f32".into(), ..base() },
+            Spec { max_depth: Some(3), ..base() },
+            Spec { camera_rays: Some(4), ..base() },
+            Spec { roulette: Some("never".into()), ..base() },
+            Spec { filter: Some("center".into()), ..base() },
+            Spec { epsilon: Some("0.001".into()), ..base() },
+        ];
+        for spec in others {
+            assert_ne!(spec, base());
+            let settings = Settings { spec: spec.clone(), ..Settings::default() };
+            let told = read(&command("cornell", &settings, InvalidSample { y: 5, x: 7, sample: 3 }));
+            let Arguments { scene, pixel, sample, seed, what, .. } = told;
+            assert_eq!((scene.as_str(), pixel.as_str(), sample), ("cornell", "7,5", 3));
+            assert_eq!(what.settings(&Lab::new(), &scene, 4, seed).unwrap().spec, spec);
+        }
+        assert!(
+            command("my scene.toml", &Settings::default(), InvalidSample { y: 0, x: 0, sample: 0 })
+                .contains(" 'my scene.toml' ")
+        );
+    }
+}

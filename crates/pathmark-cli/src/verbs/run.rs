@@ -1,0 +1,153 @@
+//! `pathmark run EXPERIMENT`: one experiment, and its report.
+
+use super::{profile, strict::Strict};
+use crate::command_line;
+use crate::console::Talk;
+use crate::console::output::{lock_folder, print};
+use crate::error::{Error, Result};
+use crate::experiment::{
+    Definition, LARGEST_REPETITIONS, Options, Progress, Sweep, SweepShard, Timeout, Until, folder_against,
+};
+use crate::files::Files;
+use crate::lab::Lab;
+use crate::lock::Sharing;
+use crate::measure::{Doubts, LeftOut};
+use crate::report::{self, check_figures, figure_of_serial};
+use crate::shell;
+use clap::Args;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// `pathmark run thread-scaling --filter strategy=rayon --set scene=my/room.toml`
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// An experiment of `pathmark list experiments`, or the path of a .toml file
+    experiment: String,
+    /// Output folder
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+    /// Resume a sweep that was stopped
+    #[arg(long)]
+    resume: bool,
+    /// After all repetitions, run the cells with doubtful rows again, once for each such row; keep both rows
+    #[arg(long)]
+    rerun_doubtful: bool,
+    /// Also count the instructions of each cell with valgrind, which takes about fifty times as long as a repetition;
+    /// `pathmark diff --counts` compares them
+    #[arg(long)]
+    count_instructions: bool,
+    /// Runs of each cell [default: set by the experiment]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(LARGEST_REPETITIONS)))]
+    repetitions: Option<u32>,
+    /// Replace the values of an axis, as in scene=my/room.toml or threads=1,2,4,8; may be given several times
+    #[arg(long = "set", value_name = "AXIS=VALUES")]
+    values: Vec<String>,
+    /// Run only cells with one of these values, as in strategy=rayon or threads=1,2; may be given several times. Serial
+    /// runs that a figure compares with are kept
+    #[arg(long = "filter", value_name = "AXIS=VALUES")]
+    filters: Vec<String>,
+    /// Run one of N parts of the cells, as in 2/4, with the serial runs that they are compared with; `pathmark merge`
+    /// merges the folders
+    #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
+    shard: Option<String>,
+    /// Another build of this program; both builds run every repetition of every cell in turns, and `pathmark diff` compares
+    /// them
+    #[arg(long, value_name = "PROGRAM", conflicts_with_all = ["resume", "shard"])]
+    against: Option<PathBuf>,
+    /// Repeat each cell until its speedup (or its time, without serial runs) is known to within this share, as in 3%. With
+    /// --against: until each cell is known to be slower by more than this share, faster, or the same. `fastest` stops
+    /// repeating a schedule once another schedule of the same image is faster, `order` once it can be told apart from all
+    /// others. At most 200 repetitions, or those of --repetitions; the intervals account for early stops
+    #[arg(long, value_name = "SHARE|fastest|order", allow_hyphen_values = true)]
+    until: Option<String>,
+    /// With --until: start no repetition after this time, as in 60s
+    #[arg(long, value_name = "TIME", requires = "until")]
+    within: Option<String>,
+    /// Time limit of each cell's process, as in 10min, or none. A cell that reaches it is ended, and its rows fail
+    /// [default: the experiment's, or ten times the estimated time, at least a minute]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    timeout: Option<String>,
+    /// Keep the hierarchies of scenes with 4096 or more primitives in this folder, and reuse them the next time; the column
+    /// `build_s` of such scenes is empty
+    #[arg(long, value_name = "FOLDER", conflicts_with = "against")]
+    cache: Option<PathBuf>,
+    #[command(flatten)]
+    size: profile::Choice,
+    #[command(flatten)]
+    strict: Strict,
+}
+
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+    let definition = Definition::load(lab, &arguments.experiment)?.with_values(&arguments.values)?;
+    check_figures(&definition)?;
+    let options = Options {
+        out: arguments.out.clone(),
+        profile: arguments.size.profile(),
+        resume: arguments.resume,
+        repetitions: arguments.repetitions,
+        filters: arguments.filters.clone(),
+        against: arguments.against.clone(),
+        shard: arguments.shard.as_deref().map(SweepShard::parse).transpose()?,
+        serial_for: figure_of_serial(&definition),
+        until: arguments.until.as_deref().map(|limit| Until::parse(limit, arguments.within.as_deref())).transpose()?,
+        timeout: arguments.timeout.as_deref().map(Timeout::parse).transpose()?,
+        rerun_doubtful: arguments.rerun_doubtful,
+        count_instructions: arguments.count_instructions,
+        cache: arguments.cache.clone(),
+        command: command_line(),
+    };
+    let mut files = Files::default();
+    let sweep = Sweep::new(&definition, &options, &mut files)?;
+    report::claim("out", &arguments.out, &mut files)?;
+    // Other experiments may run in the same folder, each in its own subfolder; `reproduce` may not.
+    let _lock = lock_folder(&arguments.out, Sharing::Shared)?;
+    let summary = sweep.run(talk)?;
+    let page = report::write(lab, &arguments.out);
+    talk_of(&summary.doubts, talk);
+    tell_left_out(&summary.left_out, talk);
+    // Failed rows are reported before a page that could not be written.
+    check_failures(summary.rows + summary.other_rows, summary.failed, summary.timed_out)?;
+    arguments.strict.check(summary.invalid)?;
+    if arguments.against.is_some() {
+        let old = folder_against(&arguments.out, &definition.name);
+        let [old, new] = [&old, &summary.folder].map(|folder| folder.display().to_string());
+        talk.note(&format!("{} compares the two builds", shell::command(["diff", &old, &new])));
+    }
+    print(&format!(
+        "{} in {}, report in {}",
+        rows(summary.rows, &summary.left_out),
+        summary.folder.display(),
+        page?.display()
+    ))
+}
+
+/// The number of rows in words, with those that were left out.
+pub(super) fn rows(count: usize, left_out: &LeftOut) -> String {
+    match left_out.count() {
+        0 => format!("{count} rows"),
+        left => format!("{count} rows ({left} left out)"),
+    }
+}
+
+/// Names the rows that were not run, if there are any.
+pub(super) fn tell_left_out(left_out: &LeftOut, talk: &Talk) {
+    if left_out.count() > 0 {
+        talk.note(&left_out.to_string());
+    }
+}
+
+/// Refuses a sweep in which rows have failed.
+pub(super) fn check_failures(rows: usize, failed: usize, timed_out: usize) -> Result<()> {
+    if failed == 0 {
+        return Ok(());
+    }
+    let at_limit = if timed_out == 0 { String::new() } else { format!(", {timed_out} of them at their time limit") };
+    Err(Error::Check(format!("{failed} of {rows} rows failed{at_limit}; their column `error` says why")))
+}
+
+/// Says how many rows have times in doubt, if there are any.
+pub(super) fn talk_of(doubts: &Doubts, talk: &Talk) {
+    if doubts.is_any() {
+        talk.note(&format!("{doubts}; `pathmark explain` describes each"));
+    }
+}

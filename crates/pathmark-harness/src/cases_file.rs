@@ -1,0 +1,74 @@
+//! `check/cases.csv`: the outcome of each hard case, as evidence for claims.
+
+use crate::atomic_file;
+use crate::error::{Error, InputError, Result};
+use crate::files::Files;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// The folder of results that contains the list.
+pub const FOLDER: &str = "check";
+/// The list's file in this folder.
+pub const FILE: &str = "cases.csv";
+
+/// One case.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CaseRow {
+    /// Name of the case in the catalogue.
+    pub id: String,
+    /// Short description of the test.
+    pub tries: String,
+    /// Whether no trial failed.
+    pub pass: bool,
+    /// Number of trials.
+    pub trials: usize,
+    /// Number of failed trials.
+    pub failed: usize,
+    /// Variant of the trial that is shown: the first that failed, or else the last.
+    pub variant: String,
+    /// Value expected in it.
+    pub expected: String,
+    /// Value found in it.
+    pub found: String,
+    /// Why the case, or a part of it, was skipped.
+    pub skipped: String,
+}
+
+/// Whether a folder of results already contains the list.
+pub fn is_in(out: &Path) -> bool {
+    out.join(FOLDER).join(FILE).is_file()
+}
+
+/// Enters the list into the files that a command will write. Refuses a folder that has one: results are never
+/// overwritten.
+pub fn claim(out: &Path, files: &mut Files) -> Result<()> {
+    files.renews("out", &out.join(FOLDER).join(FILE), |_| false)
+}
+
+/// Writes the list into a folder of results.
+pub fn write(out: &Path, rows: &[CaseRow]) -> Result<()> {
+    let folder = out.join(FOLDER);
+    std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
+    atomic_file::write(&folder.join(FILE), |file| {
+        let mut writer = csv::Writer::from_writer(file);
+        for row in rows {
+            writer.serialize(row)?;
+        }
+        writer.flush()
+    })
+}
+
+/// The list in a folder of results; empty if there is none.
+pub fn read(out: &Path) -> Result<Vec<CaseRow>> {
+    let path = out.join(FOLDER).join(FILE);
+    if !path.is_file() {
+        return Ok(Vec::new());
+    }
+    let file = std::fs::File::open(&path).map_err(|e| Error::system("reading", &path, e))?;
+    let rows: std::result::Result<_, csv::Error> = csv::Reader::from_reader(file).into_deserialize().collect();
+    rows.map_err(|error| {
+        let line = error.position().map(|position| (position.line() as usize, 1));
+        InputError::new("row", "", error.to_string()).in_file(path.display().to_string(), line).into()
+    })
+}

@@ -1,0 +1,73 @@
+//! `guards.csv`: the measured price list of the guards that keep hard inputs correct.
+
+use crate::atomic_file;
+use crate::error::{Error, InputError, Result};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// Confidence level of all intervals.
+pub const LEVEL: f64 = 0.95;
+
+/// The folder of results that contains the list.
+pub const FOLDER: &str = "guards";
+/// The list's file in this folder.
+pub const FILE: &str = "guards.csv";
+
+/// Cost and benefit of one guard.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PriceRow {
+    /// Name of the guarded property.
+    pub guard: String,
+    /// Definition of the errors, with their unit.
+    pub error: String,
+    /// The program's method.
+    pub with: String,
+    /// The simpler alternative.
+    pub without: String,
+    /// Error of the program's method, with its 95 % interval.
+    pub error_with: f64,
+    /// Lower end.
+    pub error_with_low: f64,
+    /// Upper end.
+    pub error_with_high: f64,
+    /// Error of the alternative.
+    pub error_without: f64,
+    /// Lower end.
+    pub error_without_low: f64,
+    /// Upper end.
+    pub error_without_high: f64,
+    /// The operation that is timed.
+    pub operation: String,
+    /// Median nanoseconds per operation of the program's method; empty if it could not be timed.
+    pub ns_with: Option<f64>,
+    /// Median nanoseconds per operation of the alternative.
+    pub ns_without: Option<f64>,
+    /// Time with the guard divided by time without: median over paired rounds, with its 95 % interval.
+    pub time_ratio: Option<f64>,
+    /// Lower end.
+    pub time_ratio_low: Option<f64>,
+    /// Upper end.
+    pub time_ratio_high: Option<f64>,
+}
+
+/// Writes the list.
+pub fn write_prices(path: &Path, rows: &[PriceRow]) -> Result<()> {
+    atomic_file::write(path, |file| {
+        let mut writer = csv::Writer::from_writer(file);
+        for row in rows {
+            writer.serialize(row)?;
+        }
+        writer.flush()
+    })
+}
+
+/// Reads a list.
+pub fn read_prices(path: &Path) -> Result<Vec<PriceRow>> {
+    let file = std::fs::File::open(path).map_err(|e| Error::system("reading", path, e))?;
+    let rows: std::result::Result<_, csv::Error> = csv::Reader::from_reader(file).deserialize().collect();
+    rows.map_err(|error| {
+        let line = error.position().map(|position| (position.line() as usize, 1));
+        InputError::new("row", "", error.to_string()).in_file(path.display().to_string(), line).into()
+    })
+}

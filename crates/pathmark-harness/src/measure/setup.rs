@@ -1,0 +1,374 @@
+//! Settings that have been checked, and the run itself.
+
+use super::cut::cut;
+use super::output::{self, Delivery, OUTPUTS, Output};
+use super::settings::check_spp;
+use super::tree_folder::TreeFolder;
+use super::{Settings, Warning, available_threads, pilot};
+use crate::digest;
+use crate::error::{Error, InputError, Result};
+use crate::estimator::Estimator;
+use crate::film::{Decomposition, Plan};
+use crate::kernel::workload::Entry as Workload;
+use crate::kernel::{self, Choice, Clamped, Counts, Kernel, OwnEstimator, Spec};
+use crate::lab::{Lab, THREAD_PER_ROW};
+use crate::scene::{SUBPIXELS, Scene};
+use crate::strategy::{self, Config, Strategy, StrategyError, Workers};
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::slice::from_ref;
+use std::sync::{Arc, OnceLock};
+use std::time::Instant;
+
+/// A run that can start: all user input has been checked, and all names have been looked up.
+pub struct Setup {
+    settings: Settings,
+    subject: Subject,
+    /// Made by the first run: a large scene's acceleration structure takes seconds to build, and a check of settings
+    /// needs no kernel.
+    built: OnceLock<Built>,
+    decomposition: Decomposition,
+    plan: Plan,
+    output: &'static output::Entry,
+    strategy: strategy::Entry,
+    parameter: Option<String>,
+}
+
+/// The subject of a run.
+#[derive(Clone)]
+enum Subject {
+    /// A scene to render.
+    Scene { scene: Arc<Scene>, choice: Box<Choice> },
+    /// Work that is unrelated to light.
+    Workload(Workload),
+}
+
+/// A kernel, and the seconds of its construction.
+struct Built {
+    kernel: Arc<dyn Kernel>,
+    build_s: f64,
+}
+
+impl Subject {
+    fn choice(&self) -> Option<&Choice> {
+        match self {
+            Self::Scene { choice, .. } => Some(choice),
+            Self::Workload(_) => None,
+        }
+    }
+}
+
+impl Lab {
+    /// Checks the settings, loads the scene and cuts the film into pieces.
+    pub fn prepare(&self, settings: Settings) -> Result<Setup> {
+        if let Some(workload) = self.workload_named(&settings.scene) {
+            let Spec { width, height, seed, .. } = settings.spec;
+            let nothing = Spec { estimator: String::new(), sampler: String::new(), ..Spec::default() };
+            let spec = Spec { width, height, seed, ..nothing };
+            return Setup::new(self, Subject::Workload(workload.clone()), Settings { spec, ..settings });
+        }
+        let scene = Arc::new(self.load_scene(&settings.scene)?);
+        self.prepare_scene(scene, settings)
+    }
+
+    /// The same for a loaded scene; `settings.scene` is not read.
+    pub fn prepare_scene(&self, scene: Arc<Scene>, settings: Settings) -> Result<Setup> {
+        let choice = chosen(&scene, &settings, self.own_estimators())?;
+        Setup::new(self, Subject::Scene { scene, choice }, settings)
+    }
+}
+
+impl Setup {
+    /// [`Lab::prepare`] with the built-in parts.
+    pub fn prepare(settings: Settings) -> Result<Self> {
+        Lab::built_in().prepare(settings)
+    }
+
+    /// [`Lab::prepare_scene`] with the built-in parts.
+    pub fn for_scene(scene: Arc<Scene>, settings: Settings) -> Result<Self> {
+        Lab::built_in().prepare_scene(scene, settings)
+    }
+
+    fn new(lab: &Lab, subject: Subject, settings: Settings) -> Result<Self> {
+        let settings = settings.resolved();
+        settings.check()?;
+        check_spp(settings.spp, &settings.spec.estimator, subject.spp_multiple())?;
+        if let Some(rule) = &settings.rank_rule {
+            lab.rank_rule("rank-rule", rule)?;
+        }
+        let decomposition = Decomposition::parse(&settings.decomposition)?;
+        let (strategy, parameter) = lab.strategy_named(&settings.strategy).map_err(|error| match error {
+            // Report A's name for a strategy together with its pieces is allowed too.
+            Error::Input(input)
+                if !lab.strategies().iter().any(|entry| input.value.split(':').next() == Some(entry.name)) =>
+            {
+                let allowed = format!("{}, {THREAD_PER_ROW}", input.allowed);
+                input.allowed(allowed).into()
+            }
+            other => other,
+        })?;
+        let Some(output) = output::find(&settings.output) else {
+            let names: Vec<&str> = OUTPUTS.iter().map(|entry| entry.name).collect();
+            return Err(InputError::new("output", &settings.output, "there is none of that name")
+                .allowed(names.join(", "))
+                .into());
+        };
+        let clamp = subject.choice().and_then(Choice::clamp);
+        if clamp.is_some_and(|clamp| clamp.what == Clamped::Subpixel) && decomposition.splits_samples() {
+            let problem = "cannot be combined with the subpixel clamp, which needs all samples of a pixel at once";
+            return Err(InputError::new("decomposition", &settings.decomposition, problem).into());
+        }
+        let size = [settings.spec.width, settings.spec.height];
+        let plan = cut(&decomposition, &strategy, size, from_ref(&(0..settings.spp)))?;
+        let setup =
+            Self { subject, built: OnceLock::new(), decomposition, plan, output, strategy, parameter, settings };
+        setup.check_adaptive()?;
+        Ok(setup)
+    }
+
+    /// The same run with other samples of the same radiance, without clamping.
+    pub(super) fn pilot(&self, spp: u32, seed: u64) -> Result<Self> {
+        let mut settings = Settings { spp, ..self.settings.clone() };
+        (settings.spec.seed, settings.spec.clamp, settings.adaptive) = (seed, None, false);
+        check_spp(spp, &settings.spec.estimator, self.spp_multiple())?;
+        let plan = self.plan_of(from_ref(&(0..spp)))?;
+        let mut subject = self.subject.clone();
+        if let Subject::Scene { choice, .. } = &mut subject {
+            **choice = choice.as_ref().clone().pilot(seed);
+        }
+        Ok(Self {
+            settings,
+            subject,
+            built: OnceLock::new(),
+            decomposition: self.decomposition.clone(),
+            plan,
+            output: self.output,
+            strategy: self.strategy,
+            parameter: self.parameter.clone(),
+        })
+    }
+
+    /// The same run with `estimator` in place of the one that the settings name. Records say `name`.
+    ///
+    /// ```
+    /// use pathmark_harness::effect::EffectSet;
+    /// use pathmark_harness::estimator::{Estimator, Probe};
+    /// use pathmark_harness::math::{Ray, Rgb};
+    /// use pathmark_harness::measure::{Settings, Setup};
+    /// use pathmark_harness::sampling::{SampleKey, Sampler};
+    /// use pathmark_harness::scene::Scene;
+    ///
+    /// /// Sees white wherever it looks.
+    /// struct White;
+    ///
+    /// impl Estimator for White {
+    ///     const SPP_MULTIPLE: u32 = 1;
+    ///     fn sample<S: Sampler, X: EffectSet, P: Probe>(&self, _: &Scene, _: Ray, _: SampleKey, _: &S, _: &mut P) -> Rgb {
+    ///         Rgb::WHITE
+    ///     }
+    /// }
+    ///
+    /// let setup = Setup::prepare(Settings { scene: "cornell".into(), spp: 4, ..Settings::default() })?;
+    /// let outcome = setup.with("white", White)?.run(None)?;
+    /// assert_eq!(outcome.film.pixels()[0].mean(), [1.0; 3]);
+    /// # Ok::<(), pathmark_harness::error::Error>(())
+    /// ```
+    pub fn with<E: Estimator + 'static>(mut self, name: &'static str, estimator: E) -> Result<Self> {
+        self.settings.spec.estimator = name.to_string();
+        if let Subject::Scene { scene, choice } = &mut self.subject {
+            *choice = chosen(scene, &self.settings, &[OwnEstimator::new(name, estimator)])?;
+        }
+        check_spp(self.settings.spp, name, self.spp_multiple())?;
+        self.built = OnceLock::new();
+        Ok(self)
+    }
+
+    /// The settings of the run.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// The scene's name, or the workload's.
+    pub fn name(&self) -> &str {
+        match &self.subject {
+            Subject::Scene { scene, .. } => &scene.name,
+            Subject::Workload(workload) => workload.name,
+        }
+    }
+
+    /// The scene's hash, or for a workload a hash of its name.
+    pub fn hash(&self) -> String {
+        match &self.subject {
+            Subject::Scene { scene, .. } => scene.hash.clone(),
+            Subject::Workload(workload) => digest::of_text(&format!("workload {}", workload.name)),
+        }
+    }
+
+    /// The files that the scene was read from.
+    pub fn files(&self) -> &[PathBuf] {
+        self.scene().map_or(&[], |(scene, _)| &scene.files)
+    }
+
+    /// Remarks for the scene's author: on its files, its light, and meshes that the camera does not see.
+    pub fn remarks(&self) -> Vec<String> {
+        self.scene().map_or_else(Vec::new, |(scene, choice)| scene.remarks_in(&choice.view(scene)))
+    }
+
+    /// The scene, and the choices that the settings make for it; `None` for a workload.
+    pub fn scene(&self) -> Option<(&Arc<Scene>, &Choice)> {
+        match &self.subject {
+            Subject::Scene { scene, choice } => Some((scene, choice)),
+            Subject::Workload(_) => None,
+        }
+    }
+
+    /// The number of samples per pixel must be a multiple of this.
+    pub fn spp_multiple(&self) -> u32 {
+        self.subject.spp_multiple()
+    }
+
+    /// Builds the kernel now instead of in the first run.
+    pub fn build(&self) -> Result<()> {
+        self.kernel().map(drop)
+    }
+
+    /// The kernel, for which the first caller waits, and the seconds of its construction.
+    pub(super) fn kernel(&self) -> Result<(Arc<dyn Kernel>, f64)> {
+        let built = if let Some(built) = self.built.get() {
+            built
+        } else {
+            let before = Instant::now();
+            let kernel = Arc::from(self.subject.kernel(&self.settings.spec)?);
+            self.built.get_or_init(|| Built { kernel, build_s: before.elapsed().as_secs_f64() })
+        };
+        Ok((Arc::clone(&built.kernel), built.build_s))
+    }
+
+    /// Number of jobs.
+    pub fn jobs(&self) -> usize {
+        self.plan.len()
+    }
+
+    /// Number of workers: the requested one, unless the strategy has its own rule.
+    pub fn threads(&self) -> usize {
+        match self.strategy.workers {
+            Workers::Caller => 1,
+            Workers::PerJob => self.jobs(),
+            Workers::Threads => self.settings.threads,
+        }
+    }
+
+    /// Fewest samples per pixel of a whole image: enough for the estimator, and one for each subpixel if the camera has
+    /// them.
+    pub fn fewest_spp(&self) -> u32 {
+        let multiple = self.spp_multiple();
+        let subpixels = if self.has_subpixels() { SUBPIXELS } else { 1 };
+        if multiple.is_multiple_of(subpixels) { multiple } else { multiple * subpixels }
+    }
+
+    fn has_subpixels(&self) -> bool {
+        self.scene().is_some_and(|(scene, choice)| choice.subpixels(scene) > 1)
+    }
+
+    /// Whether the film's checksum is meaningful: the sampler draws the same random numbers each time.
+    pub fn is_deterministic(&self) -> bool {
+        self.scene().is_none_or(|(_, choice)| choice.sampler().deterministic)
+    }
+
+    /// The entry of the strategy in the table.
+    pub fn strategy(&self) -> &strategy::Entry {
+        &self.strategy
+    }
+
+    /// The pieces of all requested samples.
+    pub(super) fn plan(&self) -> Plan {
+        self.plan.clone()
+    }
+
+    /// The decomposition of the film.
+    pub(super) fn decomposition(&self) -> &Decomposition {
+        &self.decomposition
+    }
+
+    /// Whether the order of the pieces depends on their costs.
+    pub(super) fn is_by_cost(&self) -> bool {
+        self.decomposition.is_by_cost()
+    }
+
+    /// The plan in the order of the hand-out.
+    pub(super) fn ordered(&self, plan: Plan, kernel: &dyn Kernel) -> Plan {
+        if self.is_by_cost() { plan.clone().longest_first(&pilot::costs(&plan, kernel)) } else { plan }
+    }
+
+    pub(super) fn new_output(&self, delivery: Delivery) -> Result<Box<dyn Output>> {
+        (self.output.new)(delivery)
+    }
+
+    pub(super) fn new_strategy(&self) -> Result<Box<dyn Strategy>> {
+        if let Some(rule) = &self.settings.rank_rule {
+            let problem = "shares jobs among processes, but there is only one";
+            return Err(InputError::new("rank-rule", rule, problem).allowed("an experiment, or render --ranks").into());
+        }
+        let threads = NonZeroUsize::new(self.settings.threads).unwrap_or(NonZeroUsize::MIN);
+        let config = Config { parameter: self.parameter.clone(), ..Config::new(threads) };
+        self.strategy.build(config).map_err(|error| self.strategy_error(error))
+    }
+
+    pub(super) fn strategy_error(&self, error: StrategyError) -> Error {
+        Error::system("running strategy", self.strategy.name, std::io::Error::other(error))
+    }
+
+    /// Doubts about a run of `spp` samples in which `workers_used` of `asked` workers had jobs.
+    pub(super) fn warnings(&self, counts: &Counts, spp: u32, asked: usize, workers_used: u32) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        if (workers_used as usize) < asked {
+            warnings.push(Warning::WorkersUnused { asked, used: workers_used });
+        }
+        let processors = available_threads();
+        // Workers that serve devices wait for them.
+        let waiting = self.subject.choice().map_or(0, Choice::devices_beside);
+        if workers_used as usize > processors + waiting {
+            warnings.push(Warning::Oversubscribed { workers: workers_used, processors });
+        }
+        if self.has_subpixels() && !spp.is_multiple_of(SUBPIXELS) {
+            warnings.push(Warning::PartialSubpixels);
+        }
+        let Some((scene, choice)) = self.scene() else { return warnings };
+        let left_out = scene.primitives.degenerate;
+        if left_out > 0 {
+            warnings.push(Warning::LeftOut(left_out));
+        }
+        if choice.is_biased() {
+            warnings.push(Warning::Biased);
+        }
+        // A background opens the scene on purpose, and a depth limit cuts paths on purpose.
+        let leaks = if scene.background.is_none() { counts.escaped } else { 0 };
+        let cuts = if choice.depth().is_none() { counts.truncated } else { 0 };
+        let counted = [(leaks, Warning::Escaped(leaks)), (cuts, Warning::Truncated(cuts))];
+        warnings.extend(counted.into_iter().filter(|(count, _)| *count > 0).map(|(_, warning)| warning));
+        warnings
+    }
+}
+
+impl Subject {
+    fn spp_multiple(&self) -> u32 {
+        match self {
+            Self::Scene { choice, .. } => choice.estimator().spp_multiple,
+            Self::Workload(_) => 1,
+        }
+    }
+
+    fn kernel(&self, spec: &Spec) -> Result<Box<dyn Kernel>> {
+        match self {
+            Self::Scene { scene, choice } => kernel::construct(scene, choice),
+            Self::Workload(workload) => Ok(workload.kernel(spec.width, spec.height, spec.seed)),
+        }
+    }
+}
+
+/// The choice of a scene's kernel, with hierarchies from the folder in the settings.
+fn chosen(scene: &Scene, settings: &Settings, own: &[OwnEstimator]) -> Result<Box<Choice>> {
+    let choice = kernel::choose_among(scene, &settings.spec, own)?;
+    let Some(folder) = &settings.cache else { return Ok(Box::new(choice)) };
+    Ok(Box::new(choice.with_trees(Arc::new(TreeFolder::new(folder)?))))
+}

@@ -1,0 +1,231 @@
+//! The text of the claims: one file for each report, embedded like the experiments.
+//!
+//! ```toml
+//! report = "A"
+//! title = "MultiThreaded PathTracer"
+//! about = "Who wrote it, and what was measured on which machine."
+//!
+//! [[claim]]
+//! id = 5
+//! quote = "words of the report, verbatim"
+//! place = "Results, table of render times"
+//! reported = "71, 166, 369, 687 and 1681 s at 8, 20, 40, 80 and 200 spp"
+//! claim = "Render time is linear in samples per pixel."
+//! experiment = "spp-quality"              # the folder whose rows answer
+//! rows = { strategy = "thread-per-row" }  # columns of records.csv and the values wanted; a list means any of them
+//! statistic = "exponent"                  # see `Statistic`
+//! x = "spp"
+//! y = "makespan_s"
+//! within = [0.9, 1.1]                     # the report's prediction; or at-least, or at-most
+//! level = 0.95                            # of the interval that is compared with it
+//! comparable-if = { width = 1024, height = 768 }
+//! expected = "confirmed"
+//! ```
+//!
+//! Optional: `a-fortiori = true`, if the bound holds under any conditions, and `note`. Instead of a statistic a claim may have `context` (why there is nothing
+//! to measure) or `missing` (why no rows exist yet).
+
+use super::condition::Conditions;
+use super::statistic::Statistic;
+use crate::error::{Error, InputError, Result};
+use crate::experiment;
+use crate::input::{locate, parse};
+use serde::Deserialize;
+
+/// A report and its claims.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Report {
+    /// Its letter.
+    pub report: String,
+    /// Its title.
+    pub title: String,
+    /// Its authors and its measurements.
+    pub about: String,
+    /// Its claims.
+    #[serde(rename = "claim")]
+    pub claims: Vec<Claim>,
+}
+
+/// A claim as it is written; [`Claim::evidence`] says how it is judged.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Claim {
+    /// Its number, from 1, unique over all reports.
+    pub id: u32,
+    /// The report's words.
+    pub quote: String,
+    /// Their place in the report.
+    pub place: String,
+    /// The report's numbers.
+    pub reported: String,
+    /// The sentence that is tested.
+    pub claim: String,
+    /// The expected verdict of a run at the report's own size. Two names with ` or ` between them mean that the value
+    /// is so near the limit that noise decides.
+    pub expected: String,
+    /// A remark for the reader.
+    #[serde(default)]
+    pub note: String,
+    context: Option<String>,
+    missing: Option<String>,
+    statistic: Option<String>,
+    within: Option<[f64; 2]>,
+    at_least: Option<f64>,
+    at_most: Option<f64>,
+    level: Option<f64>,
+    #[serde(default)]
+    comparable_if: Conditions,
+    #[serde(default)]
+    a_fortiori: bool,
+    pub(super) experiment: Option<String>,
+    pub(super) rows: Option<Conditions>,
+    pub(super) over: Option<Conditions>,
+    pub(super) column: Option<String>,
+    pub(super) per: Option<String>,
+    pub(super) of: Option<String>,
+    pub(super) by: Option<String>,
+    pub(super) x: Option<String>,
+    pub(super) y: Option<String>,
+    pub(super) strategy: Option<String>,
+    pub(super) cores: Option<usize>,
+    pub(super) ids: Option<Vec<String>>,
+    pub(super) guard: Option<String>,
+    #[serde(skip)]
+    test: Option<Test>,
+}
+
+/// The evidence that a claim is judged by.
+#[derive(Debug, Clone, Copy)]
+pub enum Evidence<'a> {
+    /// There is nothing to measure, for this reason.
+    Context(&'a str),
+    /// No rows exist yet, for this reason.
+    Missing(&'a str),
+    /// A statistic to compare with the prediction.
+    Test(&'a Test),
+}
+
+/// A statistic of measured rows, and the values that the report's claim predicts for it.
+#[derive(Debug)]
+pub struct Test {
+    pub(super) statistic: Statistic,
+    /// The ends of the prediction; a side without a limit is infinite.
+    pub(super) predicted: [f64; 2],
+    /// Confidence level of the interval.
+    pub(super) level: f64,
+    pub(super) comparable_if: Conditions,
+    pub(super) a_fortiori: bool,
+}
+
+impl Claim {
+    /// Its evidence.
+    pub fn evidence(&self) -> Evidence<'_> {
+        match (&self.test, &self.context, &self.missing) {
+            (Some(test), _, _) => Evidence::Test(test),
+            (None, Some(why), _) => Evidence::Context(why),
+            (None, None, why) => Evidence::Missing(why.as_deref().unwrap_or_default()),
+        }
+    }
+
+    /// The first field that the statistic did not take.
+    pub(super) fn unused_field(&self) -> Option<&'static str> {
+        let fields = [
+            ("experiment", self.experiment.is_some()),
+            ("rows", self.rows.is_some()),
+            ("over", self.over.is_some()),
+            ("column", self.column.is_some()),
+            ("per", self.per.is_some()),
+            ("of", self.of.is_some()),
+            ("by", self.by.is_some()),
+            ("x", self.x.is_some()),
+            ("y", self.y.is_some()),
+            ("strategy", self.strategy.is_some()),
+            ("cores", self.cores.is_some()),
+            ("ids", self.ids.is_some()),
+            ("guard", self.guard.is_some()),
+        ];
+        fields.into_iter().find(|(_, is_left)| *is_left).map(|(name, _)| name)
+    }
+
+    /// The names of the expected verdicts.
+    pub(super) fn expected_verdicts(&self) -> impl Iterator<Item = &str> {
+        self.expected.split(" or ")
+    }
+
+    fn resolve(&mut self) -> Result<()> {
+        let kinds = [self.statistic.is_some(), self.context.is_some(), self.missing.is_some()];
+        if kinds.into_iter().filter(|is_there| *is_there).count() != 1 {
+            return Err(InputError::new("id", self.id.to_string(), "has not exactly one kind of evidence")
+                .allowed("a statistic, a context or a missing")
+                .into());
+        }
+        if !self.expected_verdicts().all(|name| super::verdict::NAMES.contains(&name)) {
+            let problem = "is neither the name of a verdict nor names with ` or ` between them";
+            return Err(InputError::new("expected", &self.expected, problem)
+                .allowed(super::verdict::NAMES.join(", "))
+                .into());
+        }
+        let Some(name) = self.statistic.take() else { return Ok(()) };
+        let statistic = Statistic::taken_from(self, &name)?;
+        let predicted = match (self.within, self.at_least, self.at_most) {
+            (Some([low, high]), None, None) if low <= high => [low, high],
+            (None, Some(low), None) => [low, f64::INFINITY],
+            (None, None, Some(high)) => [f64::NEG_INFINITY, high],
+            _ => {
+                return Err(InputError::new("id", self.id.to_string(), "has not exactly one prediction")
+                    .allowed("within = [low, high], at-least = low or at-most = high")
+                    .into());
+            }
+        };
+        let Some(level) = self.level else {
+            let problem = "has a prediction, and no level for the interval that is compared with it";
+            return Err(InputError::new("id", self.id.to_string(), problem).allowed("level = 0.95").into());
+        };
+        if !(level > 0.0 && level < 1.0) {
+            return Err(InputError::new("level", level.to_string(), "is not a confidence")
+                .allowed("between 0 and 1")
+                .into());
+        }
+        let comparable_if = std::mem::take(&mut self.comparable_if);
+        comparable_if.check("comparable-if")?;
+        self.test = Some(Test { statistic, predicted, level, comparable_if, a_fortiori: self.a_fortiori });
+        Ok(())
+    }
+}
+
+impl Report {
+    /// Reads a report's claims from their text.
+    pub fn from_text(file: &str, text: &str) -> Result<Self> {
+        let mut report: Self = parse(text, file)?;
+        for claim in &mut report.claims {
+            let id = claim.id;
+            claim.resolve().map_err(|error| match error {
+                Error::Input(error) => {
+                    let at = place(text, id, &error.field, &error.value);
+                    error.in_file(file, at).into()
+                }
+                other => other,
+            })?;
+        }
+        Ok(report)
+    }
+
+    /// The four reports, with their claims.
+    pub fn all() -> Result<Vec<Self>> {
+        experiment::claims().iter().map(|(name, text)| Self::from_text(&format!("claims/{name}.toml"), text)).collect()
+    }
+}
+
+/// Line and column of a field's value in the claim with this number.
+fn place(text: &str, id: u32, field: &str, value: &str) -> Option<(usize, usize)> {
+    const HEAD: &str = "[[claim]]";
+    let own = format!("id = {id}\n");
+    let (start, part) = text.match_indices(HEAD).map(|(at, _)| at).find_map(|at| {
+        let rest = &text[at + HEAD.len()..];
+        let part = &rest[..rest.find(HEAD).unwrap_or(rest.len())];
+        part.contains(&own).then_some((at + HEAD.len(), part))
+    })?;
+    let (line, column) = locate(part, field, value).or_else(|| locate(part, "id", &id.to_string()))?;
+    Some((line + text[..start].matches('\n').count(), column))
+}

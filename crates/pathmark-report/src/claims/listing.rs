@@ -1,0 +1,229 @@
+//! Lists of verdicts: files, and a section of the page.
+
+use super::definition::{Evidence, Report};
+use super::judge::Answer;
+use super::verdict::{NAMES, Verdict};
+use crate::atomic_file;
+use crate::block::Block;
+use crate::error::{Error, Result};
+use crate::plot::number;
+use crate::table::Table;
+use std::fmt::Write;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Component, Path, PathBuf};
+
+/// Name of the verdicts' folder within the results.
+pub const FOLDER: &str = "claims";
+/// The verdicts as a table.
+pub(super) const CSV: &str = "claims.csv";
+/// The verdicts as a text. It is beside the folders of the rows, so that its links work.
+pub const MARKDOWN: &str = "CLAIMS.md";
+
+const HEADING: &str = "# The claims of the four reports";
+
+impl Answer<'_> {
+    /// The measured value with its interval.
+    pub fn measured(&self) -> String {
+        let Some(found) = &self.found else { return "-".to_string() };
+        let short = |value: f64| number::short(value, 3);
+        match found.interval {
+            None => format!("{} (one value, no interval)", short(found.value)),
+            Some(interval) if interval.low == interval.high => short(found.value),
+            Some(interval) => format!("{} ({} to {})", short(found.value), short(interval.low), short(interval.high)),
+        }
+    }
+
+    /// The values that the report predicts.
+    pub fn predicted(&self) -> String {
+        let Evidence::Test(test) = self.claim.evidence() else { return "-".to_string() };
+        let short = |value: f64| number::short(value, 3);
+        match test.predicted {
+            [low, high] if low == high => short(low),
+            [low, f64::INFINITY] => format!("at least {}", short(low)),
+            [f64::NEG_INFINITY, high] => format!("at most {}", short(high)),
+            [low, high] => format!("{} to {}", short(low), short(high)),
+        }
+    }
+
+    /// The statistic in words.
+    fn question(&self) -> String {
+        match self.claim.evidence() {
+            Evidence::Test(test) => test.statistic.to_string(),
+            _ => String::new(),
+        }
+    }
+
+    fn level(&self) -> Option<f64> {
+        Some(self.found?.interval?.level)
+    }
+}
+
+/// Writes `claims/claims.csv` and `CLAIMS.md` into a folder of results.
+pub fn save(answers: &[Answer<'_>], out: &Path) -> Result<()> {
+    let folder = out.join(FOLDER);
+    std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
+    table("claims", answers).save(&folder)?;
+    let text = markdown(answers, out);
+    atomic_file::write(&out.join(MARKDOWN), |file| file.write_all(text.as_bytes()))
+}
+
+/// The complete table of claims.
+fn table(stem: &'static str, answers: &[Answer<'_>]) -> Block {
+    let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+    let of = |answer: &Answer<'_>| answer.found;
+    Block::table(stem, "Claims and verdicts", answers)
+        .column("claim", |a| a.claim.id.to_string())
+        .column("report", |a| a.report.report.clone())
+        .column("verdict", |a| a.verdict.name().to_string())
+        .column("expected", |a| a.claim.expected.clone())
+        .column("says", |a| a.claim.claim.clone())
+        .column("quote", |a| a.claim.quote.clone())
+        .column("place", |a| a.claim.place.clone())
+        .column("reported", |a| a.claim.reported.clone())
+        .column("statistic", |a| a.question())
+        .column("predicted", |a| a.predicted())
+        .column("measured", |a| number(of(a).map(|found| found.value)))
+        .column("low", |a| number(of(a).and_then(|found| Some(found.interval?.low))))
+        .column("high", |a| number(of(a).and_then(|found| Some(found.interval?.high))))
+        .column("level", |a| number(a.level()))
+        .column("values", |a| number(of(a).map(|found| found.count as f64)))
+        .column("source", |a| a.source.as_ref().map_or_else(String::new, |source| source.display().to_string()))
+        .column("why", |a| a.why.clone())
+        .end()
+}
+
+/// Whether a file is such a table, which a new one may replace.
+pub(super) fn is_csv(path: &Path) -> bool {
+    starts_with(path, "claim,report,verdict,")
+}
+
+/// Whether a file is such a text, which a new one may replace.
+pub fn is_markdown(path: &Path) -> bool {
+    starts_with(path, HEADING)
+}
+
+fn starts_with(path: &Path, text: &str) -> bool {
+    let mut head = vec![0; text.len()];
+    File::open(path).and_then(|mut file| file.read_exact(&mut head)).is_ok() && head == text.as_bytes()
+}
+
+/// The number of claims of each report with each verdict.
+fn counts(answers: &[Answer<'_>]) -> Vec<(String, Vec<usize>)> {
+    let mut reports: Vec<&str> = answers.iter().map(|answer| answer.report.report.as_str()).collect();
+    reports.sort_unstable();
+    reports.dedup();
+    let of = |report: &str, name: &str| {
+        answers.iter().filter(|a| a.report.report == report && a.verdict.name() == name).count()
+    };
+    reports.iter().map(|report| ((*report).to_string(), NAMES.map(|name| of(report, name)).to_vec())).collect()
+}
+
+/// The path of a file as seen from a folder; the path itself if either is not there.
+fn seen_from(folder: &Path, file: &Path) -> PathBuf {
+    let Some((from, to)) = folder.canonicalize().ok().zip(file.canonicalize().ok()) else { return file.to_path_buf() };
+    let shared = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
+    let up = from.components().skip(shared).map(|_| Component::ParentDir);
+    up.chain(to.components().skip(shared)).collect()
+}
+
+/// The verdicts as a text; paths of sources are relative to `base`.
+fn markdown(answers: &[Answer<'_>], base: &Path) -> String {
+    let mut text = format!(
+        "{HEADING}\n\n`pathmark claims` computed every verdict from the rows that it links to. A claim is *confirmed* if the whole interval lies within the values \
+         that the report predicts, *refuted* if it lies wholly outside, and *open* otherwise. It is *not comparable* if the rows were measured under other conditions, and *not answered* \
+         if there are no rows.\n\n",
+    );
+    let _ = writeln!(text, "| report | {} |", NAMES.map(|name| name.replace('-', " ")).join(" | "));
+    let _ = writeln!(text, "|--|{}", "--:|".repeat(NAMES.len()));
+    for (report, counts) in counts(answers) {
+        let counts: Vec<String> = counts.iter().map(ToString::to_string).collect();
+        let _ = writeln!(text, "| {report} | {} |", counts.join(" | "));
+    }
+    let mut last: Option<&Report> = None;
+    let mut ordered: Vec<&Answer<'_>> = answers.iter().collect();
+    ordered.sort_by_key(|answer| (&answer.report.report, answer.claim.id));
+    for answer in ordered {
+        if last.is_none_or(|last| last.report != answer.report.report) {
+            let Report { report, title, about, .. } = answer.report;
+            let _ = write!(text, "\n## Report {report}: {title}\n\n{}\n", about.trim());
+            last = Some(answer.report);
+        }
+        text.push_str(&entry(answer, base));
+    }
+    text
+}
+
+/// One claim.
+fn entry(answer: &Answer<'_>, base: &Path) -> String {
+    let claim = answer.claim;
+    let mut text = format!("\n### {}. {}\n\n**{}**", claim.id, claim.claim, capital(answer.verdict));
+    if !answer.why.is_empty() {
+        let _ = write!(text, ": {}", answer.why);
+    }
+    let _ = write!(text, "\n\n> {} ({})\n\n- Reported: {}\n", claim.quote, claim.place, claim.reported);
+    if let Some(source) = &answer.source {
+        let shown = seen_from(base, source).display().to_string();
+        let count = answer.found.map_or(0, |found| found.count);
+        let level = answer.level().filter(|level| *level < 1.0);
+        let level = level.map_or_else(String::new, |level| format!(", {:.1} %", 100.0 * level));
+        let _ = writeln!(
+            text,
+            "- Measured: {}{level}; {}; {count} values, [{shown}]({shown})\n- Predicted: {}",
+            answer.measured(),
+            answer.question(),
+            answer.predicted()
+        );
+    }
+    if !claim.note.is_empty() {
+        let _ = writeln!(text, "- {}", claim.note.trim());
+    }
+    text
+}
+
+fn capital(verdict: Verdict) -> String {
+    let name = verdict.to_string();
+    let (first, rest) = name.split_at(1);
+    first.to_uppercase() + rest
+}
+
+/// The number of claims with each verdict, in a sentence.
+pub(super) fn in_short(answers: &[Answer<'_>]) -> String {
+    let count = |name: &str| answers.iter().filter(|answer| answer.verdict.name() == name).count();
+    let counts = NAMES.iter().map(|name| (count(name), name.replace('-', " "))).filter(|(count, _)| *count > 0);
+    let counts: Vec<String> = counts.map(|(count, name)| format!("{count} {name}")).collect();
+    format!(
+        "Verdicts on {} claims of the four reports, computed from these rows: {}.",
+        answers.len(),
+        counts.join(", ")
+    )
+}
+
+/// The verdicts for the page: counts, and a table for each report.
+pub(crate) fn blocks(answers: &[Answer<'_>]) -> Vec<Block> {
+    let heads: Vec<String> = std::iter::once("report").chain(NAMES).map(|name| name.replace('-', " ")).collect();
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    let rows = counts(answers).into_iter().map(|(report, counts)| {
+        std::iter::once(report).chain(counts.iter().map(ToString::to_string)).collect::<Vec<String>>()
+    });
+    let counted = Table::of_text("Verdicts", &heads, &rows.collect::<Vec<_>>());
+    let mut blocks = vec![Block::Table { stem: "verdicts", table: counted }];
+    for (stem, letter) in [("claims-a", "A"), ("claims-b", "B"), ("claims-c", "C"), ("claims-d", "D")] {
+        let own: Vec<&Answer<'_>> = answers.iter().filter(|answer| answer.report.report == letter).collect();
+        let Some(first) = own.first() else { continue };
+        blocks.push(Block::finding(format!("Report {letter}, {}. {}", first.report.title, first.report.about.trim())));
+        let title = format!("Report {letter}: claims and verdicts");
+        blocks.push(
+            Block::table(stem, title, own)
+                .column("claim", |a| format!("{}. {}", a.claim.id, a.claim.claim))
+                .column("verdict", |a| a.verdict.to_string())
+                .column("measured", |a| a.measured())
+                .column("predicted", |a| a.predicted())
+                .column("the report says", |a| format!("\u{201c}{}\u{201d}", a.claim.quote))
+                .column("reported", |a| a.claim.reported.clone())
+                .column("conditions", |a| a.why.clone())
+                .end(),
+        );
+    }
+    blocks
+}

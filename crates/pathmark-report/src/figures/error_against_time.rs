@@ -1,0 +1,41 @@
+//! The cost of accuracy by estimator and sampler: error against seconds, a line for each, with a band for its interval
+//! over seeds.
+
+use super::prelude::*;
+use crate::contenders::{Contender, CostPoint, contenders};
+
+pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
+    let scenes = contenders(results)?;
+    let Some((scene, first)) = scenes.iter().next() else {
+        let text = "There is no error against time: it takes errors against references from two seeds or more.";
+        return Ok(vec![Block::notice(text)]);
+    };
+    let mut chart = LineChart::new(
+        "What accuracy costs in time, by estimator and sampler",
+        Axis::log("seconds of rendering"),
+        Axis::log("RMSE, linear radiance"),
+        first.iter().enumerate().map(|(index, contender)| series(index, contender)).collect(),
+    );
+    chart.subtitle = format!("{scene}, {}, {}", results.size(), results.machine_line());
+    chart.caption =
+        "Bands: 95 % interval over seeds. Along a line the samples per pixel double from point to point.".to_string();
+    let start = first.first().and_then(|contender| contender.points.first()).map(|point| (point.seconds, point.rmse));
+    if let Some(curve) = start.and_then(|start| Curve::power_through(start, -0.5)) {
+        chart.overlays.push(Overlay::guide("slope -1/2", curve));
+    }
+    let points = scenes.values().flatten().flat_map(|contender| contender.points.iter().map(move |p| (contender, p)));
+    let table = Block::table("error-against-time", "Error and time along each curve", points)
+        .column("scene", |(contender, _)| contender.image.scene.clone())
+        .column("estimator + sampler", |(contender, _)| contender.name.clone())
+        .column("spp", |(_, point)| point.spp.to_string())
+        .number("seconds", Decimals(4), |(_, point)| point.seconds)
+        .told("RMSE", Decimals(5), |(_, point)| Told::of(point.rmse, point.interval))
+        .number("variation over seeds", Decimals(3), |(_, point)| point.variation)
+        .end();
+    Ok(vec![Block::figure("error-against-time", chart), table])
+}
+
+fn series(index: usize, contender: &Contender) -> Series {
+    let point = |point: &CostPoint| Told::of(point.rmse, point.interval).above(point.seconds);
+    Series::new(&contender.name, Look::nth(index), contender.points.iter().map(point).collect()).banded()
+}

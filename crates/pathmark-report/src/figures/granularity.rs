@@ -1,0 +1,179 @@
+//! Efficiency against the size of a job, the size at which half is lost (METG), and the overhead of a job.
+
+use super::prelude::*;
+use crate::analysis::metg::{Grain, HALF, Metg, metg};
+use crate::serial::Serial;
+
+/// The options of this figure.
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Options {
+    /// Two strategies whose times are compared on each decomposition.
+    compare: Option<[String; 2]>,
+}
+
+/// The serial runs, and the seconds of their jobs.
+struct Baseline<'a> {
+    serial: Serial<'a>,
+    per_job: BTreeMap<(ImageKey, &'a str), f64>,
+    processors: usize,
+}
+
+impl<'a> Baseline<'a> {
+    fn of(results: &'a Results) -> Result<Self> {
+        let serial = results.rows().filter(|row| row.schedule.is_serial());
+        let jobs = serial.filter_map(|row| {
+            let key = (row.image.without_seed(), row.decomposition.as_str());
+            Some((key, row.busy_sum_s? / row.jobs as f64))
+        });
+        let per_job = gathered(jobs).into_iter().filter_map(|(key, times)| Some((key, median(&times)?))).collect();
+        Ok(Self { serial: results.serial()?, per_job, processors: results.processors() })
+    }
+
+    /// The workers that can run at the same time.
+    fn in_use(&self, row: &Row) -> f64 {
+        row.threads.min(self.processors).max(1) as f64
+    }
+
+    /// The time of the fastest serial run over the makespan times the number of workers in use.
+    fn efficiency(&self, rows: &[&'a Row]) -> Repeats {
+        let pairs = self.serial.with_fastest(rows.iter().copied());
+        let spent = Repeats::of_rows(rows.iter().copied(), |row| Some(self.in_use(row)));
+        pairs.gains(|row| row.makespan_s).over(&spent)
+    }
+
+    /// Processor time per job beyond the serial work on the same pieces, in nanoseconds.
+    fn extra_ns(&self, rows: Vec<&'a Row>) -> Repeats {
+        self.serial.on_pieces(rows).values(|row, serial| {
+            let extra_s = self.in_use(row) * row.makespan_s? - serial.busy_sum_s?;
+            Some(extra_s / row.jobs as f64 * 1e9)
+        })
+    }
+}
+
+pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
+    let baseline = Baseline::of(results)?;
+    let cells = results.by(|row| (&row.schedule, row.image.without_seed()));
+    let cells = cells.into_iter().filter_map(|((schedule, image), rows)| {
+        let job_s = *baseline.per_job.get(&(image, schedule.key.decomposition.as_str()))?;
+        Some(((name(results, rows[0]), job_s), baseline.efficiency(&rows)))
+    });
+    let cells: Vec<((String, f64), Repeats)> = cells.collect();
+    let efficiencies = medians(cells.clone(), results.stopping());
+    let hollow = hollow(efficiencies.iter().map(|(_, efficiency)| *efficiency));
+    let intervals = efficiencies.iter().filter_map(|(_, efficiency)| efficiency.interval).collect::<Vec<_>>();
+    let lines = gathered(efficiencies.into_iter().map(|((name, job_s), efficiency)| (name, (job_s, efficiency))));
+    let line = |(index, (strategy, mut places)): (usize, (String, Vec<(f64, Told)>))| {
+        places.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let points = places.iter().map(|(job_s, efficiency)| efficiency.above(job_s * 1e6));
+        Series::new(strategy, Look::nth(index), points.collect())
+    };
+    let series = lines.into_iter().enumerate().map(line).collect();
+    let grains = gathered(cells.into_iter().map(|((name, job_s), own)| (name, (job_s, own))));
+    let grain = |(job_s, values): (f64, Vec<f64>)| -> Grain { (job_s, values) };
+    let grains: BTreeMap<String, Vec<Grain>> =
+        grains.into_iter().map(|(name, own)| (name, in_common(own).into_iter().map(grain).collect())).collect();
+    let mut chart = LineChart::new(
+        "Efficiency against the size of a job",
+        Axis::log("microseconds of work per job (serial)"),
+        Axis::linear("best serial time / (processors in use × time)").including([0.0, 1.0]),
+        series,
+    );
+    chart.subtitle = results.workload();
+    chart.caption = format!("Bars: {}.{hollow}", confidence(intervals));
+    chart.overlays = vec![Overlay::guide("one half: METG(50 %)", Curve::Line { intercept: HALF, slope: 0.0 })];
+    let smallest = grains.iter().map(|(strategy, grains)| (strategy, in_words(&metg(grains, HALF, LEVEL))));
+    let table = Block::table("metg", "Smallest job that keeps half of the processors", smallest)
+        .column("strategy", |(strategy, _)| (*strategy).clone())
+        .column("METG(50 %), microseconds", |(_, [value, _])| value.clone())
+        .column("how sure", |(_, [_, remark])| remark.clone())
+        .end();
+    let mut blocks = vec![Block::figure("granularity", chart), table, overhead(results, &baseline)];
+    let Options { compare } = options(results, "granularity")?;
+    if let Some([first, second]) = compare {
+        blocks.extend(compared(results, &first, &second)?);
+    }
+    Ok(blocks)
+}
+
+/// Compares two strategies on the same pieces in the same repetition, from the smallest jobs to the largest.
+fn compared(results: &Results, first: &str, second: &str) -> Result<Vec<Block>> {
+    let groups = results.by(|row| (&row.image, row.decomposition.as_str(), row.threads));
+    let any_strategy: Forget = |_, schedule| schedule.strategy.clear();
+    let mut cells = Vec::new();
+    for rows in groups.into_values() {
+        let of = |name: &str| rows.iter().copied().filter(|row| row.strategy == name).collect::<Vec<&Row>>();
+        cells.push((rows[0], ratios(of(first), of(second), any_strategy, |row| row.makespan_s)?));
+    }
+    let mut lines: Vec<(&Row, Ratio)> = estimates(cells, results.stopping());
+    if lines.is_empty() {
+        return Ok(Vec::new());
+    }
+    lines.sort_by_key(|(row, _)| std::cmp::Reverse(row.jobs));
+    let told = |is_meant: fn(&Interval) -> bool| {
+        let meant = lines.iter().filter(|(_, ratio)| is_meant(&ratio.interval));
+        let each = meant.map(|(row, ratio)| {
+            let Interval { low, high, .. } = ratio.interval;
+            format!("{} ({:.2}, {low:.2} to {high:.2})", row.decomposition, ratio.value)
+        });
+        let each: Vec<String> = each.collect();
+        if each.is_empty() { "none".to_string() } else { each.join(", ") }
+    };
+    let finding = format!(
+        "{first} takes longer than {second} on the pieces {}; shorter on {}. On the others the two are not told apart.",
+        told(|interval| interval.low > 1.0),
+        told(|interval| interval.high < 1.0),
+    );
+    let title = format!("Seconds of {first} over seconds of {second} on the same pieces");
+    let table = Block::table("compared", title, lines)
+        .column("pieces", |(row, _)| row.decomposition.clone())
+        .column("jobs", |(row, _)| row.jobs.to_string())
+        .column("threads", |(row, _)| row.threads.to_string())
+        .told("ratio", Decimals(3), |(_, ratio)| Told::from(*ratio))
+        .end();
+    Ok(vec![Block::finding(finding), table])
+}
+
+/// The strategy, with the image if there are several.
+fn name(results: &Results, row: &Row) -> String {
+    joined([results.series_name(row), row.schedule.name.clone()])
+}
+
+/// The size in microseconds, and its uncertainty.
+fn in_words(found: &Metg) -> [String; 2] {
+    let microseconds = |seconds: f64| format!("{:.3}", seconds * 1e6);
+    match found {
+        Metg::Value { seconds, interval, between, crossings } => {
+            let bracket = format!("between {} and {}", microseconds(between.0), microseconds(between.1));
+            let interval = interval.map_or_else(String::new, |interval| {
+                let (low, high) = (microseconds(interval.low), microseconds(interval.high));
+                format!("; {low} to {high} ({:.0} %)", 100.0 * interval.level)
+            });
+            let often = if *crossings > 1 { format!("; crosses one half {crossings} times") } else { String::new() };
+            [microseconds(*seconds), format!("{bracket}{interval}{often}")]
+        }
+        Metg::Below(least) => [format!("< {}", microseconds(*least)), "even the smallest jobs keep half".to_string()],
+        Metg::Above(most) => [format!("> {}", microseconds(*most)), "even the largest jobs do not".to_string()],
+        Metg::Undefined(reason) => ["-".to_string(), reason.to_string()],
+    }
+}
+
+/// The overhead of a job, at the largest number of jobs.
+fn overhead(results: &Results, baseline: &Baseline<'_>) -> Block {
+    let extra = results.by(|row| name(results, row)).into_iter().filter_map(|(strategy, rows)| {
+        let most = rows.iter().map(|row| row.jobs).max()?;
+        let smallest = rows.into_iter().filter(|row| row.jobs == most);
+        Some((format!("{strategy} ({most} jobs)"), baseline.extra_ns(smallest.collect())))
+    });
+    let mut extra = medians(extra, results.stopping());
+    extra.sort_by(|(_, a), (_, b)| (a.is_partial).cmp(&b.is_partial).then(a.value.total_cmp(&b.value)));
+    let rows = extra.iter().map(|(name, told)| PlotRow::new(name, vec![Some(told.dot())])).collect();
+    let mut plot = DotPlot::new("What a job costs beside its work", Axis::log("nanoseconds per job"), rows);
+    plot.subtitle = results.workload();
+    plot.caption = format!(
+        "(Processors in use × time - serial work on the same pieces) / jobs, at the most jobs measured; starting threads is in it. Bars: {}.{}",
+        confidence(extra.iter().filter_map(|(_, told)| told.interval)),
+        hollow(extra.iter().map(|(_, told)| *told)),
+    );
+    Block::figure("overhead", plot)
+}

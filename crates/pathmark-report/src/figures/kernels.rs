@@ -1,0 +1,148 @@
+//! The gain of SIMD lanes: samples per second over those of the scalar kernel, by scene, instruction set and precision.
+
+use super::prelude::*;
+use crate::analysis::versus::equal_error;
+use crate::contenders::{Contender, contenders};
+use crate::kernel::DEVICE_KERNEL;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct Options {
+    /// The kernel that the others are compared with.
+    yardstick: String,
+    /// The RMSE at which the gain of all choices together is measured, in linear radiance.
+    goal: Positive,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { yardstick: "scalar".to_string(), goal: Positive(0.01) }
+    }
+}
+
+/// The rows of one kernel, for one workload and number of threads.
+struct Line<'a> {
+    name: String,
+    threads: usize,
+    kernel: String,
+    rows: Vec<&'a Row>,
+    /// How many times as long the yardstick takes.
+    ratio: Option<Ratio>,
+}
+
+/// Clears the properties in which rows of different kernels and precisions differ.
+pub(super) fn any_kernel(image: &mut ImageKey, schedule: &mut ScheduleKey) {
+    image.precision.clear();
+    schedule.forget_kernel();
+}
+
+/// The lines of each workload. Leaves out workloads in which no kernel can be compared with the yardstick.
+fn works<'a>(results: &'a Results, yardstick: &str) -> Result<Vec<Vec<Line<'a>>>> {
+    let mut works = Vec::new();
+    for ((scene, estimator, sampler, _, threads), rows) in
+        results.by(|row| (&row.scene, &row.estimator, &row.sampler, &row.roulette, row.threads))
+    {
+        let measured = rows.into_iter().filter(|row| row.makespan_s.is_some());
+        let kernels = group(measured, |row| row.kernel_name());
+        let Some(base) = kernels.get(yardstick) else { continue };
+        let gains = kernels.iter().map(|(kernel, rows)| {
+            Ok((kernel, ratios(base.iter().copied(), rows.iter().copied(), any_kernel, |row| row.makespan_s)?))
+        });
+        let gains = estimates(gains.collect::<Result<Vec<_>>>()?, results.stopping());
+        let gains: BTreeMap<&String, Ratio> = gains.into_iter().collect();
+        let line = |(kernel, rows): (&String, &Vec<&'a Row>)| {
+            let name = format!("{scene}: {estimator} + {sampler}");
+            let ratio = gains.get(kernel).copied();
+            Line { name, threads, kernel: kernel.clone(), rows: rows.clone(), ratio }
+        };
+        let lines: Vec<Line<'_>> = kernels.iter().map(line).collect();
+        if lines.iter().any(|line| line.ratio.is_some()) {
+            works.push(lines);
+        }
+    }
+    Ok(works)
+}
+
+pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
+    let Options { yardstick, goal } = options(results, "kernels")?;
+    let works = works(results, &yardstick)?;
+    if works.is_empty() {
+        return Ok(vec![Block::notice("No two kernels rendered the same, so there is no ratio of them.")]);
+    }
+    let mut blocks = vec![Block::figure("kernels", plot(results, &works, &yardstick))];
+    let scenes = contenders(results)?;
+    blocks.extend(scenes.iter().filter_map(|(scene, all)| finding(scene, all, &yardstick, goal.0)));
+    let mut table = Block::table("kernels", "Samples and rays per second, medians", works.iter().flatten())
+        .column("workload", |line| line.name.clone())
+        .column("threads", |line| line.threads.to_string())
+        .column("kernel", |line| line.kernel.clone())
+        .number("Msamples/s", Decimals(2), |line| line.rate(|row| row.paths))
+        .number("Mrays/s", Decimals(2), |line| line.rate(|row| row.rays))
+        .told(format!("times as fast as {yardstick}"), Decimals(2), |line| line.ratio.map(Told::from));
+    if results.rows().any(|row| row.device_compile_s.is_some()) {
+        table = table.number("s to compile", Decimals(2), |line| line.typical(|row| row.device_compile_s)).number(
+            "s to copy the scene",
+            Decimals(4),
+            |line| line.typical(|row| row.device_copy_s),
+        );
+    }
+    blocks.push(table.end());
+    Ok(blocks)
+}
+
+impl Line<'_> {
+    fn typical(&self, seconds: fn(&Row) -> Option<f64>) -> Option<f64> {
+        median(&values(self.rows.iter().copied(), seconds))
+    }
+
+    fn rate(&self, count: fn(&Row) -> Option<u64>) -> Option<f64> {
+        // The rate is that of the longest renders, at the end of a curve.
+        let spp = self.rows.iter().map(|row| row.spp).max();
+        let longest = self.rows.iter().copied().filter(|row| Some(row.spp) == spp);
+        median(&values(longest, |row| Some(count(row)? as f64 / row.makespan_s? / 1e6)))
+    }
+}
+
+/// The gain of all choices together at the same error, for each number of threads.
+fn finding(scene: &str, contenders: &[Contender], yardstick: &str, goal: f64) -> Option<Block> {
+    let of = |threads: usize| contenders.iter().filter(move |contender| contender.schedule.threads == threads);
+    let slowest = of(1).find(|contender| contender.kernel == yardstick)?;
+    let gain = |contender: &Contender| equal_error(&slowest.renderer, &contender.renderer, goal);
+    let mut sentences = Vec::new();
+    let counts: BTreeSet<usize> = contenders.iter().map(|contender| contender.schedule.threads).collect();
+    for threads in counts {
+        let (best, gain) = of(threads)
+            .filter_map(|contender| Some((contender, gain(contender)?)))
+            .max_by(|a, b| a.1.value.total_cmp(&b.1.value))?;
+        let who = if threads == 1 { "one thread".to_string() } else { format!("{threads} threads") };
+        sentences.push(format!(
+            "on {who} {:.1} times as fast (95 % {:.1} to {:.1}; {})",
+            gain.value, gain.interval.low, gain.interval.high, best.name
+        ));
+    }
+    let of_slowest = &slowest.name;
+    Some(Block::finding(format!("{scene}, to an RMSE of {goal}, against {of_slowest}: {}.", sentences.join(", "))))
+}
+
+/// Ratios on one thread: on several, schedules would affect them.
+fn plot(results: &Results, works: &[Vec<Line<'_>>], yardstick: &str) -> DotPlot {
+    let kernels: BTreeSet<&str> = works.iter().flatten().map(|line| line.kernel.as_str()).collect();
+    let kernels = || kernels.iter().copied().filter(|kernel| *kernel != yardstick);
+    let alone = || works.iter().filter(|lines| lines[0].threads == 1);
+    let ratio = |lines: &[Line<'_>], kernel: &str| lines.iter().find(|line| line.kernel == kernel)?.ratio;
+    let rows = alone().map(|lines| {
+        let dots = kernels().map(|kernel| Some(Told::from(ratio(lines, kernel)?).dot()));
+        PlotRow::new(&lines[0].name, dots.collect())
+    });
+    let axis = Axis::log(format!("samples per second / those of the {yardstick} kernel")).including([1.0]);
+    let has_devices = kernels().any(|kernel| kernel.contains(DEVICE_KERNEL.name));
+    let title = if has_devices { "What SIMD lanes and devices are worth" } else { "What SIMD lanes are worth" };
+    let mut plot = DotPlot::new(title, axis, rows.collect()).grouped(kernels());
+    plot.guides = vec![(1.0, format!("the {yardstick} kernel"))];
+    plot.subtitle = format!("one thread, {}", results.machine_line());
+    let shown = alone().flatten().filter(|line| line.kernel != yardstick);
+    let intervals = shown.filter_map(|line| Some(line.ratio?.interval));
+    let hollow = hollow(alone().flatten().filter_map(|line| line.ratio.map(Told::from)));
+    plot.caption = format!("Median of ratios of renders of the same image. Bars: {}.{hollow}", confidence(intervals));
+    plot
+}

@@ -1,0 +1,82 @@
+//! Options of figures: the table `[figure.NAME]` in an experiment's definition.
+
+use super::FIGURES;
+use crate::error::{InputError, Result};
+use crate::experiment::Definition;
+use crate::input::parse_within;
+use crate::results::Results;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+/// The options of a figure. A definition without such a table, as in old folders, gets the options of the experiment of
+/// the same name that the program contains.
+pub(super) fn options<T: DeserializeOwned + Default>(results: &Results, figure: &str) -> Result<T> {
+    read(&results.definition, figure)
+}
+
+fn read<T: DeserializeOwned + Default>(definition: &Definition, figure: &str) -> Result<T> {
+    let path = ["figure", figure];
+    if definition.figure.contains_key(figure) {
+        return Ok(parse_within(&definition.text, &definition.file, &path)?.unwrap_or_default());
+    }
+    let built_in = Definition::known(&definition.lab).find(|(name, _)| *name == definition.name);
+    let found = built_in.map_or(Ok(None), |(name, text)| parse_within(text, &format!("{name}.toml"), &path))?;
+    Ok(found.unwrap_or_default())
+}
+
+/// Refuses options that a figure does not have.
+pub(super) fn check<T: DeserializeOwned + Default>(definition: &Definition, figure: &str) -> Result<()> {
+    read::<T>(definition, figure).map(|_: T| ())
+}
+
+/// The options of a figure that has none.
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+pub(super) struct NoOptions {}
+
+/// The options of a figure that compares all others with one.
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Yardstick {
+    yardstick: Option<String>,
+}
+
+/// The name of the yardstick, which the others are compared with.
+pub(super) fn yardstick(results: &Results, figure: &str, default: &str) -> Result<String> {
+    let found: Yardstick = options(results, figure)?;
+    Ok(found.yardstick.unwrap_or_else(|| default.to_string()))
+}
+
+/// A number above zero.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct Positive(pub(super) f64);
+
+impl TryFrom<f64> for Positive {
+    type Error = &'static str;
+
+    fn try_from(value: f64) -> std::result::Result<Self, Self::Error> {
+        if value > 0.0 && value.is_finite() { Ok(Self(value)) } else { Err("must be a positive number") }
+    }
+}
+
+/// Refuses tables for figures that the definition does not list, and options that a figure does not have.
+pub(super) fn check_tables(definition: &Definition) -> Result<()> {
+    for name in definition.figure.keys() {
+        if !definition.figures.contains(name) {
+            let at = place(&definition.text, name);
+            return Err(InputError::new("figure", name, "has parameters, but `figures` does not list it")
+                .allowed(definition.figures.join(", "))
+                .in_file(&definition.file, at)
+                .into());
+        }
+    }
+    let mut listed = FIGURES.iter().filter(|entry| definition.figure.contains_key(entry.name));
+    listed.try_for_each(|entry| (entry.check)(definition, entry.name))
+}
+
+/// The position of the table's head: line and column.
+fn place(text: &str, name: &str) -> Option<(usize, usize)> {
+    let is_head = |line: &str| line.trim_start_matches('[').starts_with(&format!("figure.{name}"));
+    text.lines().position(|line| line.starts_with('[') && is_head(line)).map(|index| (index + 1, 1))
+}

@@ -1,0 +1,108 @@
+//! More threads than processors: from more sections of the image with a thread each, and from more threads alone.
+
+use super::prelude::*;
+use crate::serial::{with_pieces, without_pieces};
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
+pub(super) struct Options {
+    /// The claim to test.
+    claim: Option<Claim>,
+}
+
+/// A claim that some numbers of sections, with a thread each, are good ones.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Claim {
+    /// The strategy that starts a thread for each section.
+    per_section: String,
+    /// The strategy with a thread for each processor.
+    few: String,
+    /// The smallest and the largest number of sections that the claim calls good.
+    sections: [usize; 2],
+    /// The decomposition that they are compared with.
+    against: String,
+}
+
+/// Prefix of decompositions into a number of sections of a grid.
+const GRID: &str = "grid:";
+
+type Lines = BTreeMap<String, Vec<Point>>;
+
+pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
+    let Options { claim } = options(results, "oversubscription")?;
+    let (mut by_grid, mut by_threads, mut intervals) = (Vec::new(), Vec::new(), Vec::new());
+    let groups = results.by(|row| (&row.schedule, results.series_name(row), row.spp)).into_iter();
+    let cells = groups.map(|(key, rows)| {
+        let seconds = Repeats::of_rows(rows.iter().copied(), |row| row.makespan_s);
+        ((key, rows[0].jobs), seconds)
+    });
+    let times = medians(cells, results.stopping());
+    let hollow = hollow(times.iter().map(|(_, time)| *time));
+    for (((schedule, series, _), jobs), time) in times {
+        intervals.extend(time.interval);
+        let time = time.times(1e3);
+        let threads = schedule.key.threads;
+        if schedule.key.decomposition.starts_with(GRID) {
+            let crew = if threads == jobs { "a thread for each section" } else { "a thread for each processor" };
+            let alone = claim.as_ref().is_some_and(|claim| claim.per_section == schedule.key.strategy);
+            let name = if alone { crew.to_string() } else { format!("{}, {crew}", schedule.name.replace('-', " ")) };
+            by_grid.push((joined([series, name]), time.above(jobs as f64)));
+        } else if !schedule.is_serial() {
+            by_threads.push((joined([series, schedule.name.clone()]), time.above(threads as f64)));
+        }
+    }
+    let caption = format!("Median. Bars: {}.{hollow}", confidence(intervals));
+    let chart = |title: &str, axis: Axis, lines: Lines| {
+        let ticks: Vec<f64> = lines.values().flatten().map(|point| point.x).collect();
+        let y = Axis::linear("milliseconds").including([0.0]);
+        let mut chart = LineChart::new(title, axis.ticks_at(ticks), y, Series::by_name(lines));
+        chart.subtitle = results.workload();
+        chart.caption.clone_from(&caption);
+        chart.dodge = 4.0;
+        chart
+    };
+    let (sections, threads) = (Axis::linear("sections"), Axis::log("threads"));
+    let figure = |stem: &'static str, title: &str, axis: Axis, lines: Lines| {
+        (!lines.is_empty()).then(|| Block::figure(stem, chart(title, axis, lines)))
+    };
+    let grid = figure("sections", "Time against sections of the image (report D)", sections, gathered(by_grid));
+    let by_threads = gathered(by_threads);
+    let threads = figure("threads", "Time against threads, the pieces being the same", threads, by_threads);
+    let finding = claim.map_or(Ok(None), |claim| finding(results, &claim))?;
+    Ok([grid, threads, finding].into_iter().flatten().collect())
+}
+
+/// Compares report D's "around 16 to 49 is a good number" with few sections, and with the same pieces on a thread for
+/// each processor.
+fn finding(results: &Results, claim: &Claim) -> Result<Option<Block>> {
+    let Claim { per_section, few, sections: [least, most], against } = claim;
+    let processors = results.processors();
+    let of = |strategy: &str| -> Vec<&Row> {
+        results.rows().filter(|row| row.strategy == strategy && row.decomposition.starts_with(GRID)).collect()
+    };
+    let (sections, few) = (of(per_section), of(few));
+    let own = || sections.iter().copied().filter(|row| (*least..=*most).contains(&row.jobs));
+    let fewer = sections.iter().copied().filter(|row| row.decomposition == *against);
+    let few = few.into_iter().filter(|row| row.threads == processors);
+    let seconds = |row: &Row| row.makespan_s;
+    let against_sections = Partners::of(fewer, without_pieces)?.pairs(own()).costs(seconds);
+    let against_few = Partners::of(few, with_pieces)?.pairs(own()).costs(seconds);
+    let in_words = |ratios: &Repeats| {
+        let Told { value, interval, .. } = ratios.median(results.stopping())?;
+        let interval = interval?;
+        let verdict = match (interval.low > 1.0, interval.high < 1.0) {
+            (true, _) => "longer",
+            (_, true) => "shorter",
+            _ => "not told apart",
+        };
+        Some(format!("{value:.2} times as long, {} ({verdict})", with_level(&interval, 2)))
+    };
+    let Some((sections, few)) = in_words(&against_sections).zip(in_words(&against_few)) else { return Ok(None) };
+    Ok(Some(Block::finding(format!(
+        "A thread for each of {least} to {most} sections takes, against one for each of {} sections, {sections}; against a thread for each of the {} processors on the same {least} to {most} sections, {few}. \
+         The first is what report D saw; the second is what its threads, apart from the smaller pieces, gain or cost.",
+        against.trim_start_matches(GRID),
+        processors,
+    ))))
+}

@@ -1,0 +1,95 @@
+//! The price list: samples and seconds to each accuracy, and predictions of later points from earlier ones.
+
+use super::prelude::*;
+use crate::contenders::{Check, Contender, contenders};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct Options {
+    /// The RMSEs to price, in linear radiance.
+    goals: Vec<Positive>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { goals: [0.1, 0.05, 0.02, 0.01].map(Positive).to_vec() }
+    }
+}
+
+pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
+    let Options { goals } = options(results, "price-list")?;
+    let scenes = contenders(results)?;
+    let all: Vec<&Contender> = scenes.values().flatten().collect();
+    if all.is_empty() {
+        let text = "There is no price list: it takes errors against references from two seeds or more.";
+        return Ok(vec![Block::notice(text)]);
+    }
+    let name = |contender: &Contender| {
+        if scenes.len() > 1 { format!("{}: {}", contender.image.scene, contender.name) } else { contender.name.clone() }
+    };
+    let seconds = |contender: &Contender, goal: Positive| Some(contender.renderer.price(goal.0)?.seconds);
+    let dots =
+        |contender: &Contender| goals.iter().map(|goal| Some(Told::from(seconds(contender, *goal)?).dot())).collect();
+    let rows = all.iter().map(|contender| PlotRow::new(name(contender), dots(contender))).collect();
+    let plot = DotPlot::new("What each accuracy costs", Axis::log("seconds of rendering"), rows);
+    let mut plot = plot.grouped(goals.iter().map(|goal| format!("RMSE {}", goal.0)));
+    plot.subtitle = results.workload();
+    plot.caption = format!("Bars: 95 % interval of error and time together. {}", extrapolated(&all, &goals));
+    let checks: Vec<(&Contender, Option<Check>)> =
+        all.iter().map(|contender| (*contender, contender.check())).collect();
+    let mut blocks = vec![Block::figure("price-list", plot)];
+    blocks.extend(checked(&checks));
+
+    let mut table = Block::table("price-list", "Price list, intervals of 95 %", checks)
+        .column("renderer", |(contender, _)| name(contender))
+        .number("variance of a sample", Significant(3), |(contender, _)| variance(contender))
+        .told("s per sample and pixel", Significant(3), |(own, _)| Told::from(own.renderer.seconds_per_spp))
+        .told("efficiency, 1 / (variance x s)", Significant(3), |(own, _)| own.renderer.efficiency().map(Told::from));
+    table = table.number("least RMSE that was measured", Significant(3), |(contender, _)| least_error(contender));
+    for goal in &goals {
+        let head = format!("seconds to an RMSE of {}", goal.0);
+        table = table.told(head, Significant(3), |(contender, _)| seconds(contender, *goal).map(Told::from));
+    }
+    let table = table
+        .number("predicted for spp", Decimals(0), |(_, found)| found.as_ref().map(|check| f64::from(check.spp)))
+        .number("RMSE, measured / predicted", Decimals(3), |(_, found)| found.as_ref().map(|check| check.rmse))
+        .number("seconds, measured / predicted", Decimals(3), |(_, found)| found.as_ref().map(|check| check.seconds));
+    blocks.push(table.end());
+    Ok(blocks)
+}
+
+/// The RMSE at the largest number of samples.
+fn least_error(contender: &Contender) -> Option<f64> {
+    contender.points.last().map(|point| point.rmse)
+}
+
+/// The number of prices beyond the measured samples, in words.
+fn extrapolated(all: &[&Contender], goals: &[Positive]) -> String {
+    let prices = || all.iter().flat_map(|contender| goals.iter().map(move |goal| (contender, goal.0)));
+    let beyond = prices().filter(|(contender, goal)| least_error(contender).is_some_and(|least| *goal < least)).count();
+    let count = prices().count();
+    match beyond {
+        0 => "Every price lies within the measured samples.".to_string(),
+        _ => format!(
+            "Extrapolated beyond the measured samples: {beyond} of {count} prices, those below the least measured RMSE (table)."
+        ),
+    }
+}
+
+fn variance(contender: &Contender) -> Option<f64> {
+    let renderer = &contender.renderer;
+    Some(renderer.efficiency()?.times(&renderer.seconds_per_spp)?.inverse()?.value)
+}
+
+/// A finding about the largest errors of the predictions.
+fn checked(checks: &[(&Contender, Option<Check>)]) -> Option<Block> {
+    let worst = |of: &dyn Fn(&Check) -> f64| {
+        let off = checks.iter().filter_map(|(c, check)| Some((&c.name, 100.0 * (of(check.as_ref()?) - 1.0))));
+        off.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+    };
+    let ((by_error, error), (by_time, time)) = (worst(&|check| check.rmse)?, worst(&|check| check.seconds)?);
+    Some(Block::finding(format!(
+        "Half of the seeds, up to a quarter of the samples, predict RMSE and seconds of the other half at the end of its curves. At worst the RMSE came out {error:+.1} % ({by_error}) and the \
+         seconds {time:+.1} % ({by_time}) of what was predicted. Half of an error costs four times the seconds with independent samples."
+    )))
+}

@@ -1,0 +1,83 @@
+//! Error against samples per pixel on two logarithmic axes. Independent samples fall along a line of slope -1/2.
+
+use super::prelude::*;
+use crate::analysis::jackknife::SeedCurves;
+use crate::analysis::mse::over_seeds;
+use crate::analysis::slope::power_law;
+use crate::contenders::{curves_of_seeds, one_per_seed, root_of_mean};
+
+/// The error of an image at some number of samples.
+struct Line {
+    image: String,
+    spp: u32,
+    seeds: usize,
+    error: Told,
+    /// RMSE of display values.
+    shown: f64,
+}
+
+pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
+    let (mut series, mut overlays, mut findings, mut lines) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for (index, (name, rows)) in results.by(|row| results.image_name(row)).into_iter().enumerate() {
+        let at_spp = group(rows.iter().copied(), |row| row.spp).into_iter().filter_map(|(spp, rows)| {
+            let mse = one_per_seed(&rows, |row| row.mse);
+            let interval = over_seeds(&mse, LEVEL).map(|error| error.rmse.interval);
+            let error = Told { count: Some(mse.len()), ..Told::of(root_of_mean(&mse), interval) };
+            let shown = root_of_mean(&one_per_seed(&rows, |row| row.mse_display));
+            (!mse.is_empty()).then(|| Line { image: name.clone(), spp, seeds: mse.len(), error, shown })
+        });
+        let own: Vec<Line> = at_spp.collect();
+        let curves: Vec<_> = curves_of_seeds(&rows).into_iter().map(|(curve, _)| curve).collect();
+        if let Some(fit) = SeedCurves::of_errors(&curves).and_then(|curves| power_law(&curves, LEVEL)) {
+            let (slope, interval) = (fit.exponent.value, fit.exponent.interval);
+            let curve = Curve::Power { scale: libm::exp(fit.log_scale), exponent: slope };
+            let label = format!("fit: slope {slope:.3}\n95 % {:.3} to {:.3}", interval.low, interval.high);
+            overlays.push(Overlay::fit(label, curve, index));
+            let verdict = if interval.contains(-0.5) { "contains" } else { "does not contain" };
+            findings.push(Block::finding(format!(
+                "{name}: RMSE falls as spp to the power {slope:.3}; the 95 % interval over {} seeds, {:.3} to {:.3}, {verdict} -1/2. \
+                 Halving the error so takes {:.2} times the samples ({:.2} to {:.2}).",
+                fit.seeds,
+                interval.low,
+                interval.high,
+                libm::pow(0.5, 1.0 / slope),
+                libm::pow(0.5, 1.0 / interval.low),
+                libm::pow(0.5, 1.0 / interval.high),
+            )));
+            if fit.lacks_fit() {
+                findings.push(Block::finding(format!(
+                    "{name}: the points do not lie on a line (the exponent changes along it by more than its interval), so no one exponent describes them."
+                )));
+            }
+        }
+        let points = own.iter().map(|line| line.error.above(f64::from(line.spp))).collect();
+        series.push(Series::new(name, Look::nth(index), points).scattered());
+        lines.extend(own);
+    }
+    let first = lines.first().map(|line| (f64::from(line.spp), line.error.value));
+    if let Some(curve) = first.and_then(|point| Curve::power_through(point, -0.5)) {
+        overlays.insert(0, Overlay::guide("slope -1/2", curve));
+    }
+    let mut chart = LineChart::new(
+        "Error against samples per pixel",
+        Axis::log("samples per pixel").ticks_at(results.rows().map(|row| f64::from(row.spp))),
+        Axis::log("RMSE, linear radiance"),
+        series,
+    );
+    chart.subtitle = results.workload();
+    chart.caption =
+        "Bars: 95 % interval over seeds. Squared errors are free of the references' noise (cross form).".to_string();
+    chart.overlays = overlays;
+    chart.dodge = 6.0;
+    let table = Block::table("rmse-by-spp", "Error by samples per pixel", lines)
+        .column("image", |line| line.image.clone())
+        .column("spp", |line| line.spp.to_string())
+        .column("seeds", |line| line.seeds.to_string())
+        .told("RMSE, linear", Decimals(5), |line| line.error)
+        .number("RMSE, display", Decimals(5), |line| line.shown)
+        .end();
+    let mut blocks = vec![Block::figure("rmse-against-spp", chart)];
+    blocks.extend(findings);
+    blocks.push(table);
+    Ok(blocks)
+}

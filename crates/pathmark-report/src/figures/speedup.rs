@@ -1,0 +1,297 @@
+//! Speedup against `serial`, efficiency, and the serial fraction by Karp and Flatt, which explains the missing speedup.
+
+use super::prelude::*;
+use crate::analysis::scaling_law::{Check, Fit, Fitted, Law, fit};
+use crate::analysis::speedup::{Oddity, efficiency, oddity, serial_fraction_within};
+use crate::analysis::superlinear::{Evidence, cause};
+use crate::measure::Doubts;
+use crate::schedule::is_of_ranks;
+use crate::serial::Serial;
+
+/// A chart with more lines than this is unreadable, so strategies become named rows instead.
+const MOST_LINES: usize = 8;
+
+/// The threads axis is linear up to this many threads.
+const FEW_THREADS: f64 = 16.0;
+
+/// The speedups and the data to explain them.
+struct Speedups<'a> {
+    results: &'a Results,
+    serial: Serial<'a>,
+    all: Vec<(&'a Schedule, Ratio)>,
+    /// The requested numbers of threads. A strategy with a thread for each job ignores them, so it has no position on
+    /// the axis.
+    asked: BTreeSet<usize>,
+    processors: usize,
+    /// The images of each schedule, without seeds. Schedules of other images are not ranked together.
+    images: BTreeMap<&'a Schedule, BTreeSet<ImageKey>>,
+    /// The images that most schedules rendered.
+    usual: BTreeSet<ImageKey>,
+}
+
+pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
+    let serial = results.serial()?;
+    let asked = results.rows().filter(|row| row.threads != row.jobs).map(|row| row.threads).collect();
+    let all = serial.speedups();
+    let images = |schedule: &Schedule| -> BTreeSet<ImageKey> {
+        serial.rows(schedule).iter().map(|row| row.image.without_seed()).collect()
+    };
+    let images: BTreeMap<_, _> = all.iter().map(|(schedule, _)| (*schedule, images(schedule))).collect();
+    let peers = gathered(images.iter().map(|(schedule, own)| (own, schedule))).into_iter();
+    let usual = peers.max_by_key(|(_, schedules)| schedules.len()).map(|(own, _)| own.clone()).unwrap_or_default();
+    let found = Speedups { results, serial, all, asked, processors: results.processors(), images, usual };
+    let mut blocks = found.figures();
+    blocks.extend(found.best()?);
+    blocks.extend(found.thread_per_row());
+    blocks.push(found.table());
+    Ok(blocks)
+}
+
+impl Speedups<'_> {
+    /// Workers that can run at the same time.
+    fn in_use(&self, threads: usize) -> usize {
+        threads.min(self.processors)
+    }
+
+    fn has_a_thread_per_job(&self, schedule: &Schedule) -> bool {
+        !self.asked.is_empty() && !self.asked.contains(&schedule.key.threads)
+    }
+
+    fn figures(&self) -> Vec<Block> {
+        let per_processor = |speedup: f64, threads: usize| speedup / self.in_use(threads) as f64;
+        let strategies: BTreeSet<&str> = self.all.iter().map(|(schedule, _)| schedule.name.as_str()).collect();
+        if strategies.len() <= MOST_LINES {
+            let (speedup, efficiency) = (self.speedup_chart(), self.efficiency_chart(&per_processor));
+            return vec![Block::figure("speedup", speedup), Block::figure("efficiency", efficiency)];
+        }
+        let speedup = ["Speedup by strategy", "speedup against serial", "serial"];
+        let efficiency = ["Efficiency by strategy", "speedup per processor in use", "ideal"];
+        vec![
+            Block::figure("speedup", self.dots(speedup, &|speedup, _| speedup)),
+            Block::figure("efficiency", self.dots(efficiency, &per_processor)),
+        ]
+    }
+
+    fn table(&self) -> Block {
+        // Only a serial run on the same pieces differs from the schedule in nothing else.
+        let fraction = |(schedule, speedup): &(&Schedule, Ratio), workers: usize| {
+            let is_on_pieces = self.serial.pairs(schedule).iter().next().is_some();
+            serial_fraction_within(&speedup.estimate(), workers).filter(|_| is_on_pieces).map(Told::from)
+        };
+        let work_inflation = self.serial.work_inflation();
+        let used = |schedule: &Schedule| self.in_use(schedule.key.threads);
+        let title = "Speedup against serial, efficiency and Karp-Flatt serial fraction";
+        Block::table("karp-flatt", title, &self.all)
+            .column("strategy", |(schedule, _)| schedule.name.clone())
+            .column("pieces", |(schedule, _)| schedule.key.decomposition.clone())
+            .column("threads", |(schedule, _)| schedule.key.threads.to_string())
+            .told("speedup", Decimals(3), |(_, speedup)| Told::from(*speedup))
+            .number("efficiency per thread", Decimals(3), |(s, speedup)| efficiency(speedup.value, s.key.threads))
+            .number("efficiency per processor in use", Decimals(3), |(s, speedup)| efficiency(speedup.value, used(s)))
+            .number("work inflation", Decimals(3), |(schedule, _)| work_inflation.get(schedule).copied())
+            .told("e, p = threads", Decimals(3), |own| fraction(own, own.0.key.threads))
+            .told("e, p = processors in use", Decimals(3), |own| fraction(own, used(own.0)))
+            .column("remark", |(schedule, speedup)| self.remark(schedule, speedup))
+            .end()
+    }
+
+    fn remark(&self, schedule: &Schedule, speedup: &Ratio) -> String {
+        let partial = if speedup.is_partial { "fewer repetitions than others: not comparable" } else { "" };
+        joined([self.oddity(schedule, speedup), partial.to_string()])
+    }
+
+    fn oddity(&self, schedule: &Schedule, speedup: &Ratio) -> String {
+        let threads = schedule.key.threads;
+        match oddity(&speedup.interval, self.in_use(threads)) {
+            Some(Oddity::Superlinear) => format!("superlinear; {}", cause(&self.evidence(schedule))),
+            Some(Oddity::Slowdown) if threads > 1 => "slower than serial".to_string(),
+            _ if threads == 1 => "relative speedup: the strategy's own cost at one worker".to_string(),
+            _ => String::new(),
+        }
+    }
+
+    /// The evidence for the cause of a superlinear speedup.
+    fn evidence(&self, schedule: &Schedule) -> Evidence {
+        let mut alone = schedule.clone();
+        alone.key.threads = 1;
+        let at_one_worker =
+            || self.serial.pairs(&alone).gains(|row| row.makespan_s).median(self.results.stopping())?.interval;
+        // The baseline's doubts count as well: a serial run that was delayed makes all others look fast.
+        let pairs = self.serial.pairs(schedule);
+        let baselines = pairs.iter().map(|(_, serial)| serial);
+        let concerned = self.serial.rows(schedule).iter().copied().chain(baselines);
+        let machine = &self.results.run.machine;
+        Evidence {
+            at_one_worker: (schedule.key.threads > 1).then(at_one_worker).flatten(),
+            warnings: concerned.filter(|row| Doubts::concern(&row.warnings)).count(),
+            processors: Some(machine.processors),
+            physical_cores: Some(machine.physical_cores).filter(|cores| *cores > 0),
+        }
+    }
+
+    /// The confidence of the drawn intervals.
+    fn confidence(&self) -> String {
+        confidence(self.all.iter().map(|(_, speedup)| speedup.interval))
+    }
+
+    fn hollow(&self) -> &'static str {
+        hollow(self.all.iter().map(|(_, speedup)| Told::from(*speedup)))
+    }
+
+    fn is_usual(&self, schedule: &Schedule) -> bool {
+        self.images.get(schedule) == Some(&self.usual)
+    }
+
+    /// A row for each strategy with a dot for each number of threads. A strategy with a thread for each job has one
+    /// dot.
+    fn dots(&self, [title, axis, guide]: [&str; 3], value: &dyn Fn(f64, usize) -> f64) -> DotPlot {
+        let threads: BTreeSet<usize> =
+            self.all.iter().filter(|(s, _)| !self.has_a_thread_per_job(s)).map(|(s, _)| s.key.threads).collect();
+        // Schedules of one image stand together, those of the usual image first.
+        let mut rows: BTreeMap<(bool, String), Vec<Option<_>>> = BTreeMap::new();
+        for (schedule, speedup) in &self.all {
+            let line = (!self.is_usual(schedule), self.serial.line(schedule));
+            let dots = rows.entry(line).or_insert_with(|| vec![None; threads.len() + 1]);
+            let place = threads.iter().position(|threads| *threads == schedule.key.threads).unwrap_or(threads.len());
+            dots[place] = Some(Told::from(*speedup).times(value(1.0, schedule.key.threads)));
+        }
+        // Sorted by the value at the most threads, because readers look for it first. Partial values are not ranked.
+        let at_most = |dots: &[Option<Told>]| {
+            let mut all = dots.iter().flatten();
+            let ranked = all.clone().rfind(|told| !told.is_partial);
+            ranked.or_else(|| all.next_back()).map(|told| (told.is_partial, -told.value)).unwrap_or_default()
+        };
+        let mut rows: Vec<_> = rows.into_iter().collect();
+        rows.sort_by(|((a, _), first), ((b, _), second)| {
+            let ((first_partial, first), (second_partial, second)) = (at_most(first), at_most(second));
+            (a, first_partial).cmp(&(b, second_partial)).then(first.total_cmp(&second))
+        });
+        let dots = |dots: Vec<Option<Told>>| dots.into_iter().map(|told| Some(told?.dot())).collect();
+        let rows: Vec<PlotRow> = rows.into_iter().map(|((_, name), own)| PlotRow::new(name, dots(own))).collect();
+        let workers = if self.all.iter().any(|(schedule, _)| is_of_ranks(&schedule.name)) {
+            ["worker", "workers"]
+        } else {
+            ["thread", "threads"]
+        };
+        let name = |threads: &usize| format!("{threads} {}", workers[usize::from(*threads != 1)]);
+        let mut names: Vec<String> = threads.iter().map(name).collect();
+        if rows.iter().any(|row| row.dots[threads.len()].is_some()) {
+            names.push("a thread per job".to_string());
+        }
+        let mut plot = DotPlot::new(title, Axis::linear(axis).including([0.9]), rows).grouped(names);
+        plot.guides = vec![(1.0, guide.to_string())];
+        plot.subtitle = self.results.workload();
+        plot.caption = format!("Median of ratios within a repetition. Bars: {}.{}", self.confidence(), self.hollow());
+        plot
+    }
+
+    /// A series for each strategy, except those with a thread for each job.
+    fn series(&self, value: &dyn Fn(f64, usize) -> f64) -> Vec<Series> {
+        let mut lines: BTreeMap<String, Vec<_>> = BTreeMap::new();
+        for (schedule, speedup) in self.all.iter().filter(|(schedule, _)| !self.has_a_thread_per_job(schedule)) {
+            let threads = schedule.key.threads;
+            let point = Told::from(*speedup).times(value(1.0, threads)).above(threads as f64);
+            lines.entry(self.serial.line(schedule)).or_default().push(point);
+        }
+        Series::by_name(lines)
+    }
+
+    fn chart(&self, title: &str, y: Axis, series: Vec<Series>, caption: &str) -> LineChart {
+        let ticks: Vec<f64> = series.iter().flat_map(|series| &series.points).map(|point| point.x).collect();
+        // On linear axes, a speedup in proportion to the threads is a straight line. Many threads do not fit on them.
+        let few = ticks.iter().all(|threads| *threads <= FEW_THREADS);
+        let x = if few { Axis::linear("threads") } else { Axis::log("threads") }.ticks_at(ticks);
+        let mut chart = LineChart::new(title, x, y, series);
+        chart.subtitle = self.results.workload();
+        chart.caption = caption.to_string();
+        chart.dodge = 5.0;
+        chart
+    }
+
+    fn speedup_chart(&self) -> LineChart {
+        let processors = self.processors as f64;
+        let y = Axis::linear("speedup against serial").including([0.0, processors.max(1.0) * 1.25]);
+        let has_level = self.all.iter().any(|(schedule, _)| self.has_a_thread_per_job(schedule));
+        let level = if has_level { " Level: a thread for each job, whatever is asked for." } else { "" };
+        let caption =
+            &format!("Median of ratios within a repetition. Bars: {}.{level}{}", self.confidence(), self.hollow());
+        let mut chart = self.chart("Speedup against threads", y, self.series(&|speedup, _| speedup), caption);
+        let ticks: BTreeSet<usize> =
+            chart.series.iter().flat_map(|series| &series.points).map(|point| point.x as usize).collect();
+        for (schedule, speedup) in self.all.iter().filter(|(schedule, _)| self.has_a_thread_per_job(schedule)) {
+            let points = ticks.iter().map(|threads| Told::from(*speedup).above(*threads as f64)).collect();
+            let name = format!("{}: always {}", schedule.name, schedule.key.threads);
+            chart.series.push(Series::new(name, crate::plot::style::Look::nth(chart.series.len()), points));
+        }
+        chart.overlays = vec![
+            Overlay::guide(format!("{processors} processors"), Curve::Line { intercept: processors, slope: 0.0 }),
+            Overlay::guide("ideal: one per thread", Curve::Line { intercept: 0.0, slope: 1.0 }),
+        ];
+        chart.overlays.extend(self.fits(&chart.series));
+        chart
+    }
+
+    /// Amdahl's law where the fit passes its check, in the colours of the strategies' lines.
+    fn fits(&self, series: &[Series]) -> Vec<Overlay> {
+        let overlay = |(name, points): (String, Vec<_>)| {
+            let Fit::Found(Fitted { parameters, check: Check::Passed { .. }, .. }) = fit(Law::Amdahl, &points, LEVEL)
+            else {
+                return None;
+            };
+            let serial_share = parameters.first()?.estimate.value;
+            let curve = Curve::Scaling { contention: serial_share, coherence: 0.0 };
+            let line = series.iter().position(|series| series.name == name)?;
+            Some(Overlay::fit(format!("{name}: Amdahl, s = {serial_share:.3}"), curve, line))
+        };
+        self.serial.lines(self.processors).into_iter().filter_map(overlay).collect()
+    }
+
+    fn efficiency_chart(&self, per_processor: &dyn Fn(f64, usize) -> f64) -> LineChart {
+        let y = Axis::linear("speedup per processor in use").including([0.5, 1.05]);
+        let (bars, hollow) = (self.confidence(), self.hollow());
+        let caption = &format!("Processors in use: the smaller of threads and processors. Bars: {bars}.{hollow}");
+        let mut chart = self.chart("Efficiency against threads", y, self.series(per_processor), caption);
+        chart.overlays = vec![Overlay::guide("ideal: 1", Curve::Line { intercept: 1.0, slope: 0.0 })];
+        chart
+    }
+
+    /// The fastest strategy with a thread for each processor, and whether the others are slower beyond the noise.
+    fn best(&self) -> Result<Option<Block>> {
+        let processors = self.processors;
+        let is_candidate = |schedule: &Schedule| schedule.key.threads == processors && self.is_usual(schedule);
+        let candidates = || self.all.iter().filter(|(schedule, _)| processors > 1 && is_candidate(schedule));
+        let whole = candidates().filter(|(_, speedup)| !speedup.is_partial);
+        let Some((best, speedup)) = whole.max_by(|a, b| a.1.value.total_cmp(&b.1.value)) else { return Ok(None) };
+        let (mut slower, mut open) = (Vec::new(), Vec::new());
+        for (other, _) in candidates().filter(|(other, _)| other != best) {
+            let rows = |schedule: &Schedule| self.serial.rows(schedule).iter().copied();
+            if let Some(ratio) = time_ratio(rows(other), rows(best), any_schedule, self.results.stopping())? {
+                let text = format!("{} ({})", other.name, told(&ratio, 3));
+                if ratio.interval.low > 1.0 { slower.push(text) } else { open.push(text) }
+            }
+        }
+        let list = |names: Vec<String>| if names.is_empty() { "none".to_string() } else { names.join("; ") };
+        Ok(Some(Block::finding(format!(
+            "With {processors} threads on {processors} processors the highest median speedup is that of {}: {:.3} times serial, {}, an \
+             efficiency of {:.3}. Paired with it, these take longer (ratio of times, interval): {}. These are not told apart from it by this run: {}.",
+            best.name,
+            speedup.value,
+            with_level(&speedup.interval, 3),
+            speedup.value / processors as f64,
+            list(slower),
+            list(open),
+        ))))
+    }
+
+    fn thread_per_row(&self) -> Option<Block> {
+        let (schedule, speedup) = self.all.iter().find(|(schedule, _)| schedule.is_thread_per_row())?;
+        let rows = schedule.key.threads;
+        let verdict = if speedup.interval.high < rows as f64 { "is refuted" } else { "is not refuted" };
+        Some(Block::finding(format!(
+            "A thread for each of {rows} rows is {:.3} times as fast as serial, {}. Report A's claim that a thread per row divides the time by \
+             the number of rows {verdict} by this run.",
+            speedup.value,
+            with_level(&speedup.interval, 3),
+        )))
+    }
+}

@@ -1,0 +1,92 @@
+//! The price list of the guards: `guards/guards.csv`, which `pathmark check --out` and `reproduce` write.
+
+use super::block::Block;
+use super::page::Section;
+use super::table::Digits::{Decimals, Significant};
+use super::words::{LEVEL, Told};
+use crate::analysis::Interval;
+use crate::error::Result;
+use crate::experiment::{Chapter, read_run_file};
+use crate::guard_prices::{FILE, FOLDER, PriceRow, read_prices};
+use crate::measure::{Doubts, LeftOut};
+use crate::plot::{Axis, Dot, DotPlot, Row};
+use std::path::Path;
+
+const QUESTION: &str = "What does it cost to be right on hard inputs, and how wrong is what would do on easy ones?";
+
+const ANALYSIS: &str = "A guard is extra work that keeps hard inputs correct; on easy inputs a simpler method would do. Both are tried on the same hard inputs against the exact answer, and timed by turns on the same work. \
+A ratio above 1 is what the guard costs in the operation that it guards; in an image it is far less, because an image does much besides. Where the ratio is below 1, being right is also faster.\n\n\
+The simpler variants are not options of the program: a table of hard cases (`pathmark check`) insists that the program passes where they fail.";
+
+/// The section, if a folder has a price list. Writes its figure and tables beside the list.
+pub(super) fn section(out: &Path) -> Result<Option<Section>> {
+    let folder = out.join(FOLDER);
+    let path = folder.join(FILE);
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let rows = read_prices(&path)?;
+    let run = read_run_file(&folder.join("machine.toml"))?;
+    let blocks = vec![
+        Block::Figure { stem: "guards", figure: Box::new(plot(&rows, run.machine.line())) },
+        prices(&rows),
+        meanings(&rows),
+    ];
+    for block in &blocks {
+        block.save(&folder.join("figures"))?;
+    }
+    Ok(Some(Section {
+        name: FOLDER.to_string(),
+        title: "What being right costs: the guards".to_string(),
+        question: QUESTION.to_string(),
+        analysis: ANALYSIS.to_string(),
+        chapter: Some(Chapter::HardInputs),
+        place: 0,
+        in_short: None,
+        again: None,
+        failed: Vec::new(),
+        left_out: LeftOut::default(),
+        doubts: Doubts::default(),
+        rows: rows.len(),
+        run: Some(run),
+        blocks,
+    }))
+}
+
+fn plot(rows: &[PriceRow], machine: String) -> DotPlot {
+    let dot = |row: &PriceRow| Some(Dot::new(row.time_ratio?, row.time_ratio_low.zip(row.time_ratio_high)));
+    let named = rows.iter().map(|row| Row { name: row.guard.clone(), dots: vec![dot(row)] }).collect();
+    let mut plot = DotPlot::new("What each guard costs", Axis::log("time with the guard / time without"), named);
+    plot.subtitle = machine;
+    plot.caption = "Bars: distribution-free 95 % interval of the median over paired rounds. The table says what goes wrong without each guard.".to_string();
+    plot.guides = vec![(1.0, "as fast".to_string())];
+    plot
+}
+
+fn prices(rows: &[PriceRow]) -> Block {
+    let told = |value: f64, low: f64, high: f64| {
+        // A value that is not estimated has no interval.
+        Told::of(value, (low < high).then_some(Interval { low, high, level: LEVEL }))
+    };
+    let ratio = |row: &PriceRow| Some(told(row.time_ratio?, row.time_ratio_low?, row.time_ratio_high?));
+    Block::table("price-list", "Price list of the guards", rows)
+        .column("guard", |row| row.guard.clone())
+        .told("error with it", Significant(3), |row| told(row.error_with, row.error_with_low, row.error_with_high))
+        .told("error without", Significant(3), |row| {
+            told(row.error_without, row.error_without_low, row.error_without_high)
+        })
+        .number("ns with it", Significant(3), |row| row.ns_with)
+        .number("ns without", Significant(3), |row| row.ns_without)
+        .told("time with / without", Decimals(2), |row| ratio(row))
+        .end()
+}
+
+fn meanings(rows: &[PriceRow]) -> Block {
+    Block::table("meanings", "What is compared", rows)
+        .column("guard", |row| row.guard.clone())
+        .column("the program's way", |row| row.with.clone())
+        .column("the other way", |row| row.without.clone())
+        .column("what the error is", |row| row.error.clone())
+        .column("what is timed", |row| row.operation.clone())
+        .end()
+}

@@ -1,0 +1,103 @@
+//! The report: turns records into figures, tables, findings and one self-contained page.
+
+mod again;
+mod benches;
+mod block;
+pub mod claims;
+mod contenders;
+mod figures;
+pub mod forecasts;
+mod guards;
+mod naming;
+mod page;
+mod paired;
+#[cfg(test)]
+mod pairing_tests;
+pub mod plot;
+pub mod rank_forecasts;
+mod reference_image;
+mod results;
+mod rows;
+mod schedule;
+mod serial;
+mod table;
+#[cfg(test)]
+mod tests;
+pub mod timeline;
+mod words;
+
+pub use benches::{BenchRow, write_benches};
+pub use block::Block;
+pub use figures::{FIGURES, FigureEntry, check_figures, figure_of_serial};
+pub use results::Results;
+
+use crate::error::{Error, InputError, Result};
+use crate::files::Files;
+use crate::lab::Lab;
+use page::Section;
+use pathmark_harness::{
+    analysis, atomic_file, cases_file, cluster, digest, error, experiment, files, film_file, guard_prices, image_io,
+    input, kernel, lab, measure, metric, scene, shell, simulate,
+};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The page's name in a folder of results.
+const PAGE: &str = "report.html";
+
+/// Enters the page of a folder into the files of a command that will write it. `option` is the option that named the
+/// folder. Refuses a folder that has another file of that name.
+pub fn claim(option: &str, out: &Path, files: &mut Files) -> Result<()> {
+    files.renews(option, &out.join(PAGE), page::is_page)
+}
+
+/// Draws the figures of every experiment in a folder and writes `report.html` there; returns the page's path. The page
+/// shows the verdicts on claims; only the verb `claims` writes them into files.
+pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
+    let mut sections = Vec::new();
+    for folder in experiment_folders(out)? {
+        let results = Results::read(lab, out, &folder)?;
+        let blocks = figures::blocks(&results)?;
+        for block in &blocks {
+            block.save(&folder.join("figures"))?;
+        }
+        sections.push(Section::of(results, blocks));
+    }
+    sections.extend(guards::section(out)?);
+    sections.extend(benches::section(out)?);
+    if let Some(section) = claims::section(lab, out)? {
+        sections.insert(0, section);
+    }
+    if sections.is_empty() {
+        let problem = "holds no experiment: no folder in it has a records.csv";
+        return Err(InputError::new("folder", out.display().to_string(), problem).into());
+    }
+    let page = out.join(PAGE);
+    let html = page::html(&sections)?;
+    atomic_file::write(&page, |file| file.write_all(html.as_bytes()))?;
+    Ok(page)
+}
+
+/// Writes one block's figure or table into a folder.
+pub fn save(block: &Block, folder: &Path) -> Result<()> {
+    block.save(folder)
+}
+
+/// The folders that have records, sorted by name.
+fn experiment_folders(out: &Path) -> Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(out).map_err(|e| match e.kind() {
+        std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => {
+            InputError::new("folder", out.display().to_string(), "there is no such folder").into()
+        }
+        _ => Error::system("reading", out, e),
+    })?;
+    let mut folders = Vec::new();
+    for entry in entries {
+        let path = entry.map_err(|e| Error::system("reading", out, e))?.path();
+        if path.join("records.csv").is_file() {
+            folders.push(path);
+        }
+    }
+    folders.sort();
+    Ok(folders)
+}

@@ -1,0 +1,393 @@
+//! `report.html`: the whole report in one file, readable without a network.
+
+use super::again::Again;
+use super::block::Block;
+use super::results::Results;
+use super::table::Table;
+use super::words::counted;
+use crate::error::Result;
+use crate::experiment::{Chapter, Definition, RunFile};
+use crate::measure::{Doubts, LeftOut, Record};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use serde::Serialize;
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+const STYLE: &str = include_str!("../assets/report.css");
+const SCRIPTS: [&str; 3] = [
+    include_str!("../assets/report.js"),
+    include_str!("../assets/report-pictures.js"),
+    include_str!("../assets/report-timelines.js"),
+];
+
+const TITLE: &str = "Pathmark: report";
+
+/// The title is within this many bytes from the beginning of a page.
+const HEAD_BYTES: u64 = 1024;
+
+/// Whether a file is a report page, which a new one may replace.
+pub(super) fn is_page(path: &Path) -> bool {
+    let mut head = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(HEAD_BYTES).read_to_end(&mut head));
+    read.is_ok() && String::from_utf8_lossy(&head).contains(&format!("<title>{TITLE}</title>"))
+}
+
+/// Tables with more rows start closed.
+const OPEN_ROWS: usize = 12;
+
+/// A part of the page: an experiment, the guards, the benches or the claims.
+pub(super) struct Section {
+    /// Its anchor, the target of links.
+    pub(super) name: String,
+    pub(super) title: String,
+    pub(super) question: String,
+    pub(super) analysis: String,
+    /// Its chapter; `None` for the claims, which are a chapter by themselves.
+    pub(super) chapter: Option<Chapter>,
+    /// Its place in the chapter.
+    pub(super) place: u32,
+    /// Its finding at the beginning of the page.
+    pub(super) in_short: Option<String>,
+    /// The commands that run a part again; `None` if there are none.
+    pub(super) again: Option<Again>,
+    /// Rows that failed.
+    pub(super) failed: Vec<Record>,
+    /// Rows that were not run.
+    pub(super) left_out: LeftOut,
+    /// Number of rows that were run and did not fail.
+    pub(super) rows: usize,
+    /// Rows whose times are in doubt.
+    pub(super) doubts: Doubts,
+    /// Command and machine; `None` for the claims, which are computed anew for each page.
+    pub(super) run: Option<RunFile>,
+    pub(super) blocks: Vec<Block>,
+}
+
+impl Section {
+    /// The section of an experiment.
+    pub(super) fn of(results: Results, blocks: Vec<Block>) -> Self {
+        let rows = results.len();
+        let doubts = results.doubts();
+        let again = Again::of(&results);
+        let Definition { name, title, question, analysis, chapter, place, in_short, .. } = results.definition;
+        let findings = || blocks.iter().filter_map(Block::as_finding);
+        let in_short = in_short.and_then(|number| findings().nth(number.get() - 1)).map(ToString::to_string);
+        let Results { failed, left_out, run, .. } = results;
+        let (chapter, run) = (Some(chapter), Some(run));
+        Self {
+            name,
+            title,
+            question,
+            analysis,
+            chapter,
+            place,
+            in_short,
+            again,
+            failed,
+            left_out,
+            rows,
+            doubts,
+            run,
+            blocks,
+        }
+    }
+}
+
+/// Longer cells are prose and may be broken into lines.
+const LONGEST_CELL: usize = 56;
+
+/// The page.
+pub(super) fn html(sections: &[Section]) -> Result<String> {
+    let claims = sections.iter().filter(|section| section.chapter.is_none());
+    let claims = claims.map(|section| self::section(section, true)).collect::<Result<Vec<Markup>>>()?;
+    let chapters: Vec<(Chapter, Vec<&Section>)> =
+        Chapter::ALL.into_iter().map(|chapter| (chapter, of_chapter(sections, chapter))).collect();
+    let chapters: Vec<_> = chapters.into_iter().filter(|(_, sections)| !sections.is_empty()).collect();
+    let body = chapters.iter().map(|(chapter, sections)| self::chapter(*chapter, sections));
+    let body = body.collect::<Result<Vec<Markup>>>()?;
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (TITLE) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                nav aria-label="Contents" { (contents(sections, &chapters)) }
+                main {
+                    h1 { (TITLE) }
+                    p { "How should unequal pieces of work be scheduled on many cores, and what does accuracy cost in time? "
+                        "Every number below comes from the rows in " code { "records.csv" } " beside this page; " code { "METHODOLOGY.md" } " says how." }
+                    (in_short(sections, &chapters))
+                    @for part in claims.iter().chain(&body) { (part) }
+                    (sources(sections))
+                }
+                @for script in SCRIPTS { script { (PreEscaped(script)) } }
+            }
+        }
+    };
+    Ok(page.into_string())
+}
+
+/// The sections of a chapter, in their order.
+fn of_chapter(sections: &[Section], chapter: Chapter) -> Vec<&Section> {
+    let mut own: Vec<&Section> = sections.iter().filter(|section| section.chapter == Some(chapter)).collect();
+    own.sort_by_key(|section| section.place);
+    own
+}
+
+fn contents(sections: &[Section], chapters: &[(Chapter, Vec<&Section>)]) -> Markup {
+    let link = |name: &str, title: &str| html! { a href={ "#" (name) } { (title) } };
+    html! {
+        details open {
+            summary { "Contents" }
+            ul {
+                @if sections.iter().any(|section| section.in_short.is_some()) { li { (link(IN_SHORT, "In short")) } }
+                @for section in sections.iter().filter(|section| section.chapter.is_none()) {
+                    li { (link(&section.name, &section.title)) }
+                }
+                @for (chapter, sections) in chapters {
+                    li {
+                        (link(chapter.anchor(), chapter.title()))
+                        ul { @for section in sections { li { (link(&section.name, &section.title)) } } }
+                    }
+                }
+                li { (link(SOURCES, SOURCES_TITLE)) }
+            }
+        }
+    }
+}
+
+const IN_SHORT: &str = "in-short";
+const SOURCES: &str = "sources";
+const SOURCES_TITLE: &str = "Machine, method, raw data";
+
+/// The most important findings, each with a link to its section.
+fn in_short(sections: &[Section], chapters: &[(Chapter, Vec<&Section>)]) -> Markup {
+    let claims = sections.iter().filter(|section| section.chapter.is_none());
+    let ordered = claims.chain(chapters.iter().flat_map(|(_, sections)| sections.iter().copied()));
+    let found: Vec<(&Section, &str)> =
+        ordered.filter_map(|section| Some((section, section.in_short.as_deref()?))).collect();
+    html! {
+        @if !found.is_empty() {
+            section.in-short id=(IN_SHORT) {
+                h2 { "In short" }
+                ul { @for (section, text) in found { li { (prose(text)) " " a href={ "#" (section.name) } { (section.title) } } } }
+            }
+        }
+    }
+}
+
+fn chapter(chapter: Chapter, sections: &[&Section]) -> Result<Markup> {
+    let parts = sections.iter().map(|own| section(own, false)).collect::<Result<Vec<Markup>>>()?;
+    Ok(html! {
+        h2 id=(chapter.anchor()) { (chapter.title()) }
+        @for part in &parts { (part) }
+    })
+}
+
+/// The folder of each section's rows, with the program and the machine that measured them.
+fn sources(sections: &[Section]) -> Markup {
+    let mut runs: Vec<(&Section, &RunFile)> =
+        sections.iter().filter_map(|section| Some((section, section.run.as_ref()?))).collect();
+    runs.sort_by(|a, b| a.0.name.cmp(&b.0.name));
+    html! {
+        section id=(SOURCES) {
+            h2 { (SOURCES_TITLE) }
+            p { "Each folder holds the raw rows, one for each repetition, the machine and the figures as files. "
+                "Times of different machines, or of different hours of a machine that others use too, do not compare; "
+                "ratios within a folder do, because each repetition visits every cell once." }
+            details.wide open {
+                summary { "Folders" }
+                table {
+                    thead { tr { th { "folder" } th { "rows" } th { "failed" } th { "left out" } th { "in doubt" } th { "profile" } th { "processors" } th { "processor" } th { "sources" } } }
+                    tbody {
+                        @for (section, run) in runs {
+                            @let machine = &run.machine;
+                            tr {
+                                td { a href={ "#" (section.name) } { (section.name) } }
+                                td { (section.rows) }
+                                td { (section.failed.len()) }
+                                td { (section.left_out.count()) }
+                                td { (section.doubts.count()) }
+                                td { (run.profile) }
+                                td { (machine.processors) }
+                                td { (machine.cpu) }
+                                td { @if !run.program.is_empty() { (run.program) ", " } (machine.commit) @if machine.dirty { " with changes" } }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A section. Its heading has the rank of a chapter's if it is a chapter itself.
+fn section(section: &Section, is_chapter: bool) -> Result<Markup> {
+    let parts = section.blocks.iter().map(|block| part(&section.name, block)).collect::<Result<Vec<Markup>>>()?;
+    Ok(html! {
+        section id=(section.name) data-again=[section.again.as_ref().map(json)] {
+            @if is_chapter { h2 { (section.title) } } @else { h3 { (section.title) } }
+            p { strong { "Question. " } (prose(&section.question)) }
+            @if !section.failed.is_empty() {
+                div.failed {
+                    p { strong { (section.failed.len()) " rows failed." } " They are left out of figures and tables." }
+                    ul { @for (error, cells) in failures(&section.failed).into_iter().take(10) { li { code { (cells[0]) } @if cells.len() > 1 { " and " (cells.len() - 1) " more" } ": " (error) } } }
+                }
+            }
+            @if section.left_out.count() > 0 {
+                div.failed {
+                    p { strong { "Left out: " (counted(section.left_out.count(), "row")) "." } " Rows that were not run are in no figure or table." }
+                    ul { @for line in section.left_out.lines() { li { (line) } } }
+                }
+            }
+            @if section.doubts.is_any() { p.doubts.high[section.doubts.is_high()] { (section.doubts) "; " code { "pathmark explain" } " says what each means." } }
+            @if let Some(goal) = section.run.as_ref().and_then(|run| run.until.as_ref()) {
+                p.doubts {
+                    "Repetitions went on until the goal " code { (goal) } " or a limit was reached. Intervals of medians hold all the same; those of fitted lines take the number of repetitions for fixed."
+                }
+            }
+            @for part in &parts { (part) }
+            @for paragraph in section.analysis.split("\n\n") { p { (prose(paragraph)) } }
+            @if let Some(run) = &section.run { (provenance(section, run)) }
+        }
+    })
+}
+
+/// The errors of the failed rows, each with its cells: a program that fails usually fails in every row.
+fn failures(failed: &[Record]) -> Vec<(&str, Vec<&str>)> {
+    let (mut errors, mut places) = (Vec::<(&str, Vec<&str>)>::new(), HashMap::new());
+    for record in failed {
+        let place = *places.entry(record.error.as_str()).or_insert(errors.len());
+        if place == errors.len() {
+            errors.push((&record.error, Vec::new()));
+        }
+        errors[place].1.push(&record.cell);
+    }
+    errors
+}
+
+fn part(section: &str, block: &Block) -> Result<Markup> {
+    Ok(match block {
+        Block::Finding(text) => html! { p.finding { (prose(text)) } },
+        Block::Notice(text) => html! { p.notice { (prose(text)) } },
+        Block::Figure { stem, figure } => html! {
+            figure id={ (section) "-" (stem) } {
+                (PreEscaped(figure.svg()?))
+                @if let Some((name, svg)) = figure.other_svg()? { div.other hidden data-name=(name) { (PreEscaped(svg)) } }
+                @if let Some(data) = figure.data() { script.jobs type="application/json" { (PreEscaped(in_script(&data))) } }
+            }
+        },
+        Block::Picture { stem, title, png, comparison, images } => html! {
+            figure.sheet id={ (section) "-" (stem) } {
+                img alt=(title) src={ "data:image/png;base64," (STANDARD.encode(png)) };
+                script.images type="application/json" { (PreEscaped(in_script(&json(&(comparison, images))))) }
+            }
+        },
+        Block::Table { table, .. } => table_markup(table),
+    })
+}
+
+/// Data for the page's script.
+fn json(data: &impl Serialize) -> String {
+    serde_json::to_string(data).unwrap_or_default()
+}
+
+/// JSON for a script element: a tag within a name must not end the element.
+fn in_script(json: &str) -> String {
+    json.replace('<', "\\u003c")
+}
+
+fn table_markup(table: &Table) -> Markup {
+    // A column is set as text if one of its cells is long.
+    let mut is_text = vec![false; table.heads().count()];
+    for row in table.rows() {
+        is_text.iter_mut().zip(&row).for_each(|(is_text, cell)| *is_text |= cell.len() > LONGEST_CELL);
+    }
+    html! {
+        details.wide open[table.len() <= OPEN_ROWS] {
+            summary { (table.title) }
+            table {
+                thead { tr { @for (head, is_text) in table.heads().zip(&is_text) { th.text[*is_text] { (head) } } } }
+                tbody {
+                    @for row in table.rows() {
+                        tr {
+                            @for ((cell, column), is_text) in row.iter().zip(table.heads()).zip(&is_text) {
+                                td.text[*is_text] data-verdict=[(column == "verdict").then_some(cell)] { (broken(cell, *is_text)) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The text of a cell. Lines break only between a number, its interval and its confidence, also in a narrow column.
+fn broken(cell: &str, is_text: bool) -> Markup {
+    if is_text || !cell.starts_with(|first: char| first.is_ascii_digit() || first == '-') {
+        return html! { (cell) };
+    }
+    let parts = cell.split_inclusive(", ").flat_map(|part| match part.find(" (") {
+        Some(at) => vec![&part[..at], &part[at + 1..]],
+        None => vec![part.trim_end()],
+    });
+    html! { @for part in parts { span { (part.replace(" %", "\u{a0}%")) } " " } }
+}
+
+fn provenance(section: &Section, run: &RunFile) -> Markup {
+    let RunFile { command, program, profile, machine, .. } = run;
+    // The system may not report a number, which is then 0.
+    let or_unknown = |number: u64, told: String| if number == 0 { "unknown".to_string() } else { told };
+    let memory = format!("{:.1} GiB", machine.memory_bytes as f64 / f64::from(1 << 30));
+    let cores = or_unknown(machine.physical_cores as u64, machine.physical_cores.to_string());
+    let facts = [
+        ("processor", machine.cpu.clone()),
+        ("processors", format!("{} ({cores} physical cores)", machine.processors)),
+        ("governor", machine.governor.clone()),
+        ("memory", or_unknown(machine.memory_bytes, memory)),
+        ("system", machine.system.clone()),
+        ("load when the sweep began", machine.load_average.clone()),
+        ("compiler", format!("{}, profile {}, flags {}", machine.rustc, machine.profile, or_none(&machine.rustflags))),
+        ("program", program.clone()),
+        (
+            "Pathmark's sources",
+            format!("{}{}", machine.commit, if machine.dirty { " with uncommitted changes" } else { "" }),
+        ),
+        (
+            "rows",
+            format!("{} done, {} failed, {} left out", section.rows, section.failed.len(), section.left_out.count()),
+        ),
+    ];
+    html! {
+        details open[false] {
+            summary { "Command and machine" }
+            pre { (command) }
+            p { "Profile " (profile) "." }
+            table { @for (name, value) in facts.into_iter().filter(|(_, value)| !value.is_empty()) { tr { th { (name) } td.text { (value) } } } }
+        }
+    }
+}
+
+/// Text from definitions; parts between backticks are code.
+fn prose(text: &str) -> Markup {
+    html! {
+        @for (index, part) in text.split('`').enumerate() {
+            @if index % 2 == 1 { code { (part) } } @else { (part) }
+        }
+    }
+}
+
+fn or_none(text: &str) -> &str {
+    if text.is_empty() { "none" } else { text }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,373 @@
+use super::block::Block;
+use super::contenders::contenders;
+use super::figures::{FIGURES, blocks, check_figures};
+use super::results::Results;
+use crate::error::Error;
+use crate::experiment::{Definition, RunFile, experiments};
+use crate::lab::Lab;
+use crate::measure::{Record, SCHEMA};
+use std::cell::Cell;
+use std::collections::BTreeSet;
+use tempfile::TempDir;
+
+thread_local!(static PASSES: Cell<usize> = const { Cell::new(0) });
+
+/// Called at the beginning of each pass of a figure over the rows.
+pub(super) fn count_pass() {
+    PASSES.set(PASSES.get() + 1);
+}
+
+fn definition(figures: &[&str], more: &str) -> String {
+    let axes = "[matrix]\nscene = [\"cornell\"]\nestimator = [\"bsdf\", \"nee\"]\nspp = [4]\nseed = [1]\nstrategy = [\"serial\"]\nthreads = [1]\ndecomposition = [\"rows\"]\n";
+    let sizes = "[quick]\nsize = [8, 6]\nrepetitions = 1\n[full]\nsize = [8, 6]\nrepetitions = 1\n";
+    format!("title = \"\"\nquestion = \"\"\nanalysis = \"\"\nfigures = {figures:?}\n{more}\n{axes}{sizes}")
+}
+
+/// A row of sixteen jobs that took a second.
+pub(super) fn row() -> Record {
+    let word = |word: &str| word.to_string();
+    Record {
+        schema: SCHEMA,
+        scene: word("cornell"),
+        scene_hash: word("0"),
+        effects: word("smallpt"),
+        width: 8,
+        height: 6,
+        spp: 4,
+        seed: 1,
+        estimator: word("bsdf"),
+        sampler: word("independent"),
+        kernel: word("scalar"),
+        precision: word("f64"),
+        accelerator: word("none"),
+        roulette: word("albedo:5"),
+        decomposition: word("tiles:2x2"),
+        strategy: word("serial"),
+        output: word("slots"),
+        threads: 1,
+        jobs: 16,
+        workers_used: Some(1),
+        makespan_s: Some(1.0),
+        cpu_user_s: Some(1.0),
+        cpu_system_s: Some(0.0),
+        busy_sum_s: Some(1.0),
+        paths: Some(192),
+        rays: Some(500),
+        mse: Some(0.01),
+        mean_radiance: Some(0.5),
+        ..Record::default()
+    }
+}
+
+/// A folder of results with the rows of `an-experiment`, as a sweep leaves it; each row gets its own cell.
+pub(super) fn folder_of(figures: &[&str], more: &str, rows: Vec<Record>) -> TempDir {
+    let out = tempfile::tempdir().unwrap();
+    let folder = out.path().join("an-experiment");
+    std::fs::create_dir(&folder).unwrap();
+    std::fs::write(folder.join("experiment.toml"), definition(figures, more)).unwrap();
+    let mut run = RunFile::of_now("pathmark run".to_string());
+    run.machine.processors = 2;
+    run.write(&folder.join("machine.toml")).unwrap();
+    let mut file = csv::Writer::from_path(folder.join("records.csv")).unwrap();
+    for (index, row) in rows.into_iter().enumerate() {
+        let cell = if row.cell.is_empty() { format!("cell {index}") } else { row.cell.clone() };
+        file.serialize(Record { cell, ..row }).unwrap();
+    }
+    file.flush().unwrap();
+    out
+}
+
+/// The rows read back.
+pub(super) fn results(figures: &[&str], more: &str, rows: Vec<Record>) -> crate::error::Result<Results> {
+    let out = folder_of(figures, more, rows);
+    Results::read(&Lab::built_in(), out.path(), &out.path().join("an-experiment"))
+}
+
+/// The text of all blocks.
+pub(super) fn words(blocks: &[Block]) -> String {
+    let of = |block: &Block| match block {
+        Block::Finding(text) | Block::Notice(text) => text.clone(),
+        Block::Figure { figure, .. } => figure.svg().unwrap(),
+        Block::Picture { title, .. } => title.clone(),
+        Block::Table { table, .. } => table.rows().flatten().collect::<Vec<String>>().join("\n"),
+    };
+    blocks.iter().map(of).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn rows_that_nothing_tells_apart_are_refused() {
+    let twice = || vec![Record { cell: "one".to_string(), ..row() }, Record { cell: "other".to_string(), ..row() }];
+    let Err(Error::Input(error)) = results(&["speedup"], "", twice()).map(|_| ()) else { panic!("accepted") };
+    assert_eq!((error.field.as_str(), error.value.as_str()), ("cell", "other"));
+    assert!(error.problem.contains("one") && error.to_string().contains("records.csv:3"), "{error}");
+    // A row that failed is ignored, so it does not conflict with another.
+    let mut rows = twice();
+    rows[1].error = "killed".to_string();
+    assert!(results(&["speedup"], "", rows).is_ok());
+}
+
+/// One change for each axis of images that figures once ignored.
+const FORGOTTEN: [fn(&mut Record); 6] = [
+    |row| row.max_depth = Some(3),
+    |row| row.camera_rays = Some(4),
+    |row| row.roulette = "throughput:2".to_string(),
+    |row| row.clamp = "subpixel".to_string(),
+    |row| row.precision = "f32".to_string(),
+    |row| row.width = 16,
+];
+
+#[test]
+fn speedups_compare_the_same_image_on_every_axis() {
+    for (index, change) in FORGOTTEN.iter().enumerate() {
+        // Two images, one of which takes a hundred times as long; the pool renders each twice as fast as serial.
+        let mut rows = Vec::new();
+        for (repetition, slow) in [(0, false), (1, false), (0, true), (1, true)] {
+            for (strategy, threads, seconds) in [("serial", 1, 2.0), ("pool", 2, 1.0)] {
+                let mut row = Record { repetition, threads, strategy: strategy.to_string(), ..row() };
+                row.makespan_s = Some(if slow { 100.0 * seconds } else { seconds });
+                if slow {
+                    change(&mut row);
+                }
+                rows.push(row);
+            }
+        }
+        let results = results(&["speedup"], "", rows).unwrap();
+        let found = results.serial().unwrap().speedups();
+        assert_eq!(found.len(), 1, "axis {index}");
+        let (value, interval) = (found[0].1.value, found[0].1.interval);
+        assert_eq!((value, interval.low, interval.high), (2.0, 2.0, 2.0), "axis {index}");
+    }
+}
+
+#[test]
+fn contenders_are_told_apart_on_every_axis() {
+    let schedules: [fn(&mut Record); 4] = [
+        |row| row.output = "locked".to_string(),
+        |row| row.decomposition = "rows".to_string(),
+        |row| row.effects = "all".to_string(),
+        |row| row.accelerator = "sah".to_string(),
+    ];
+    for (index, change) in FORGOTTEN.iter().chain(&schedules).enumerate() {
+        let mut rows = Vec::new();
+        for (seed, spp) in [(1, 4), (1, 8), (2, 4), (2, 8), (3, 4), (3, 8)] {
+            let mut plain = Record { spp, seed, ..row() };
+            plain.mse = Some(0.1 / f64::from(spp) * (1.0 + seed as f64));
+            plain.makespan_s = Some(f64::from(spp) * (1.0 + 0.1 * seed as f64));
+            let mut other = plain.clone();
+            change(&mut other);
+            rows.extend([plain, other]);
+        }
+        let results = results(&["price-list"], "", rows).unwrap();
+        let names: BTreeSet<String> = contenders(&results).unwrap().into_values().flatten().map(|c| c.name).collect();
+        assert_eq!(names.len(), 2, "axis {index}: {names:?}");
+    }
+}
+
+/// The pilot that distributes adaptive samples counts as rendering time; the pilot that orders pieces does not.
+#[test]
+fn the_pilot_of_adaptive_samples_is_paid_for() {
+    let even = Record { makespan_s: Some(2.0), pilot_s: Some(1.0), ..Record::default() };
+    assert_eq!(even.rendering_s(), Some(2.0));
+    let adaptive = Record { adaptive: true, ..even };
+    assert_eq!(adaptive.rendering_s(), Some(3.0));
+    assert_eq!(Record { makespan_s: None, ..adaptive }.rendering_s(), None);
+}
+
+/// Rows of `each` strategies, scenes and samplers, with names that the program does not know.
+fn of_unknown_names(each: usize) -> Vec<Record> {
+    let numbered = |name: &str, index: usize| format!("{name}-{index}");
+    let mut rows = Vec::new();
+    for (seed, index) in (1..=3).flat_map(|seed| (0..each).map(move |index| (seed, index))) {
+        let names = Record { sampler: numbered("my-sampler", index), estimator: "my-estimator".to_string(), ..row() };
+        let (mse, makespan_s) = (Some(0.01 * seed as f64), Some(1.0 + 0.1 * seed as f64));
+        let image = Record { seed, makespan_s, mse, ..names };
+        for strategy in ["serial", &numbered("my-pool", index)] {
+            for scene in ["my-scene".to_string(), numbered("balls:1", index).replace('-', "")] {
+                for (accelerator, output, effects) in
+                    [("none", "slots", "smallpt"), ("my-tree", "my-output", "my-effects")]
+                {
+                    let word = |word: &str| word.to_string();
+                    rows.push(Record {
+                        scene: scene.clone(),
+                        strategy: word(strategy),
+                        threads: if strategy == "serial" { 1 } else { 2 },
+                        accelerator: word(accelerator),
+                        output: word(output),
+                        effects: word(effects),
+                        ..image.clone()
+                    });
+                }
+            }
+        }
+    }
+    rows
+}
+
+#[test]
+fn unknown_names_are_drawn() {
+    let shown = [
+        ("speedup", &["my-pool-0", "my-pool-1"][..]),
+        ("schedules", &["my-pool-0", "my-scene"]),
+        ("clock", &["my-pool-1"]),
+        ("granularity", &["my-pool-0"]),
+        ("outputs", &["my-output"]),
+        ("acceleration", &["my-tree"]),
+        ("generators", &["my-sampler-0"]),
+        ("time-against-spp", &["my-sampler-1"]),
+        ("rmse-against-spp", &["my-sampler-1", "my-scene"]),
+        ("price-list", &["my-estimator", "my-sampler-1"]),
+        ("error-against-time", &["my-estimator"]),
+    ];
+    for (figure, names) in shown {
+        let mut rows = of_unknown_names(2);
+        if figure == "outputs" || figure == "acceleration" {
+            // The figure compares one axis at a time.
+            rows.retain(|row| row.effects == "smallpt");
+            let other = |row: &Record| match figure {
+                "outputs" => Record { output: "my-output".to_string(), ..row.clone() },
+                _ => Record { accelerator: "my-tree".to_string(), ..row.clone() },
+            };
+            rows.extend(rows.clone().iter().map(other));
+        }
+        let results = results(&[figure], "", rows).unwrap();
+        let text = words(&blocks(&results).unwrap());
+        for name in names {
+            assert!(text.contains(name), "{figure} does not show {name}: {text}");
+        }
+    }
+}
+
+/// An output that was tried on some pieces only has no rows for the others.
+#[test]
+fn outputs_are_told_only_where_they_were_tried() {
+    let rows = Record { decomposition: "rows".to_string(), ..row() };
+    let locked = Record { output: "locked".to_string(), makespan_s: Some(2.0), ..row() };
+    let results = results(&["outputs"], "", vec![row(), rows, locked]).unwrap();
+    let tables = blocks(&results).unwrap();
+    let table = tables.iter().find_map(|block| if let Block::Table { table, .. } = block { Some(table) } else { None });
+    let told: Vec<[String; 4]> =
+        table.unwrap().rows().map(|row| [0, 1, 3, 4].map(|column: usize| row[column].clone())).collect();
+    let expected = [
+        ["slots", "rows", "1000.000", "1.000, no interval"],
+        ["slots", "tiles:2x2", "1000.000", "1.000, no interval"],
+        // One repetition has no interval, so its ratio is not shown.
+        ["locked", "tiles:2x2", "2000.000", "-"],
+    ];
+    assert_eq!(told, expected);
+}
+
+#[test]
+fn no_figure_goes_through_the_rows_once_for_each_of_many_groups() {
+    for entry in FIGURES {
+        let passes = |each: usize| {
+            let mut rows = of_unknown_names(each);
+            if ["outputs", "acceleration", "kernels"].contains(&entry.name) {
+                rows.retain(|row| row.effects == "smallpt");
+            }
+            let results = results(&[entry.name], "", rows).unwrap();
+            PASSES.set(0);
+            blocks(&results).unwrap();
+            PASSES.get()
+        };
+        let (few, many) = (passes(2), passes(6));
+        assert_eq!(few, many, "{}: three times the groups, and {many} instead of {few} passes", entry.name);
+    }
+}
+
+fn refusal(figures: &[&str], more: &str) -> String {
+    let text = definition(figures, more);
+    let definition = Definition::from_text(&Lab::built_in(), "mine", "mine.toml", &text).unwrap();
+    match check_figures(&definition) {
+        Err(Error::Input(error)) => error.to_string(),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn options_that_a_figure_does_not_have_are_refused_at_their_line() {
+    let cases = [
+        ("[figure.price-list]\ngoal = 0.1", "mine.toml:6:1", "goals"),
+        ("[figure.price-list]\ngoals = [0.1, -2.0]", "mine.toml:6:", "positive"),
+        ("[figure.price-list]\ngoals = \"few\"", "mine.toml:6:", "goals"),
+        ("[figure.speedup]\nyardstick = \"serial\"", "mine.toml:6:1", "yardstick"),
+        ("[figure.clock]\n", "mine.toml:5:1", "price-list, speedup"),
+    ];
+    for (more, place, word) in cases {
+        let error = refusal(&["price-list", "speedup"], more);
+        assert!(error.contains(place) && error.contains(word), "{more}: {error}");
+    }
+}
+
+#[test]
+fn options_reach_the_figure_of_any_experiment() {
+    let rows = |strategy: &str| Record { strategy: strategy.to_string(), threads: 2, ..row() };
+    let rows = (0..6).flat_map(|repetition| ["mine", "other"].map(|name| Record { repetition, ..rows(name) }));
+    let results = results(&["openmp"], "[figure.openmp]\nyardstick = \"mine\"", rows.collect()).unwrap();
+    let text = words(&blocks(&results).unwrap());
+    assert!(text.contains("time / time of mine") && text.contains("other"), "{text}");
+}
+
+#[test]
+fn every_built_in_experiment_gives_its_figures_known_options() {
+    for (name, text) in experiments() {
+        let definition = Definition::from_text(&Lab::built_in(), name, &format!("{name}.toml"), text).unwrap();
+        check_figures(&definition).unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+}
+
+/// Two strategies beside serial, six times.
+fn speedup_rows() -> Vec<Record> {
+    let times = [("serial", 1, 2.0), ("static-blocks", 2, 1.25), ("rayon", 2, 1.0)];
+    let rows = (0..6).flat_map(|repetition| times.map(|time| (repetition, time)));
+    let row = |(repetition, (strategy, threads, seconds)): (u32, (&str, usize, f64))| Record {
+        repetition,
+        strategy: strategy.to_string(),
+        threads,
+        makespan_s: Some(seconds),
+        ..row()
+    };
+    rows.map(row).collect()
+}
+
+#[test]
+fn the_page_begins_with_the_findings_that_experiments_name() {
+    let out = folder_of(&["speedup"], "chapter = \"scheduling\"\nin-short = 1", speedup_rows());
+    let page = super::write(&Lab::built_in(), out.path()).unwrap();
+    let html = std::fs::read_to_string(page).unwrap();
+    let place = |text: &str| html.find(text).unwrap_or_else(|| panic!("the page lacks {text}"));
+    let (start, short, chapter) = (place("<main"), place("id=\"in-short\""), place("id=\"chapter-scheduling\""));
+    assert!(start < short && short < chapter && chapter < place("id=\"an-experiment\""));
+    assert!(html[short..chapter].contains("2.000 times serial"), "{}", &html[short..chapter]);
+    assert!(html[short..chapter].contains("href=\"#an-experiment\""));
+    // Chapters without a section are left out.
+    assert!(!html.contains("chapter-effects"));
+    // If `in-short` names a finding that does not exist, the page is written without the section "In short".
+    let out = folder_of(&["speedup"], "in-short = 99", speedup_rows());
+    let html = std::fs::read_to_string(super::write(&Lab::built_in(), out.path()).unwrap()).unwrap();
+    assert!(!html.contains("id=\"in-short\"") && html.contains("id=\"chapter-others\""));
+}
+
+/// A reader who points at a mark sees the row's value.
+#[test]
+fn figures_carry_the_values_that_they_draw() {
+    let results = results(&["speedup"], "", speedup_rows()).unwrap();
+    let blocks = blocks(&results).unwrap();
+    let figure = |name: &str| {
+        blocks.iter().find_map(|block| match block {
+            Block::Figure { stem, figure } if *stem == name => Some(figure.svg().unwrap()),
+            _ => None,
+        })
+    };
+    let svg = figure("speedup").unwrap();
+    let note = |series: &str| {
+        svg.lines().find(|line| line.contains("class=\"note\"") && line.contains(&format!("data-series=\"{series}\"")))
+    };
+    assert!(note("static-blocks").unwrap().contains("data-value=\"1.6\""), "{svg}");
+    assert!(note("rayon").unwrap().contains("<title>rayon: 2 (2 to 2) at threads = 2</title>"), "{svg}");
+    // Each series can be switched off at its legend entry.
+    for series in ["rayon", "static-blocks"] {
+        for class in ["series", "legend"] {
+            assert!(svg.contains(&format!("<g class=\"{class}\" data-series=\"{series}\">")), "{class} {series}");
+        }
+    }
+}
