@@ -1,7 +1,7 @@
 //! The table of hard cases that `pathmark check` prints. `PATHMARK_THOROUGH=1` uses as many random inputs as the
 //! catalogue requires.
 
-use pathmark::check::{Case, Effort, Outcome, cases, run};
+use pathmark::check::{Case, Effort, Outcome, cases, find, run};
 use pathmark::measure::available_threads;
 use std::collections::BTreeSet;
 
@@ -26,6 +26,22 @@ fn all_cases_pass() {
     }
     let wrong: Vec<String> = all.iter().zip(&outcomes).flat_map(|(case, outcome)| wrong(case, outcome)).collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// The claims on the reports name cases that there are.
+#[test]
+fn claims_name_cases() {
+    let mut named = 0;
+    for (name, text) in pathmark::experiment::claims() {
+        let report: toml::Table = toml::from_str(text).unwrap();
+        let of_claim = |claim: &toml::Value| claim.get("ids").and_then(toml::Value::as_array).cloned();
+        for id in report["claim"].as_array().unwrap().iter().filter_map(of_claim).flatten() {
+            let id = id.as_str().unwrap();
+            assert!(find(id).is_some(), "{name}: {id}");
+            named += 1;
+        }
+    }
+    assert!(named > 0);
 }
 
 /// A panic is a failed trial. A case without trials fails unless it states why.
