@@ -11,7 +11,7 @@ use crate::kernel::workload::{self, WORKLOADS, Workload};
 use crate::scene::{Library, OwnScene, Scene};
 use crate::shell;
 use crate::strategy::{Entry as Strategy, STRATEGIES, StrategyError};
-pub use rank_rule::{LOOK, Master, RankRule, Way, is_small};
+pub use rank_rule::{Distribution, LOOK, Master, RankRule, is_small};
 use std::fmt;
 use std::panic::Location;
 use std::sync::{Arc, LazyLock};

@@ -77,12 +77,12 @@ pub fn rank_predictions(
     let mut predictions = Vec::new();
     for ((rule, strategy, pieces, (ranks, threads)), pairs) in groups {
         let crew = Crew { ranks: ranks.into(), threads };
-        let way = lab.rank_rule("rank-rule", &rule)?.way();
+        let distribution = lab.rank_rule("rank-rule", &rule)?.distribution();
         let Some(within) = within(contenders, &strategy, threads) else { continue };
         let cluster = Cluster { crew, within, messages, hardware: Hardware::default() };
         let seconds = |(row, serial): &(&Row, &Row)| {
             let costs = costs.get(&(serial.cell.as_str(), serial.repetition))?;
-            Some([cluster.makespan_s(costs, way), row.makespan_s?])
+            Some([cluster.makespan_s(costs, distribution), row.makespan_s?])
         };
         let pairs: Vec<[f64; 2]> = pairs.iter().filter_map(seconds).collect();
         let middle = |value: fn(&[f64; 2]) -> f64| median(&pairs.iter().map(value).collect::<Vec<f64>>());
@@ -151,7 +151,7 @@ pub fn rank_forecast(plan: &RankPlan<'_>, contenders: &[Contender], costs: &[f64
             for &ranks in plan.ranks.iter().filter(|ranks| rule.check(**ranks).is_ok()) {
                 let crew = Crew { ranks, threads };
                 let cluster = Cluster { crew, within, messages: plan.messages, hardware: plan.hardware };
-                let makespan_s = cluster.makespan_s(costs, rule.way());
+                let makespan_s = cluster.makespan_s(costs, rule.distribution());
                 let speedup = if makespan_s > 0.0 { serial_s / makespan_s } else { 1.0 };
                 let gather_s = cluster.gather_s(PIXEL_BYTES * pixels);
                 let (rule, strategy) = (rule.to_string(), within.name.clone());

@@ -22,7 +22,7 @@ mod watertight;
 pub use measured::Measured;
 
 use crate::guard_prices::{LEVEL, PriceRow};
-use crate::measure::{InTurns, in_turns};
+use crate::measure::{Interleaved, interleaved};
 use std::hint::black_box;
 
 /// All guards, in the order in which a path meets them.
@@ -71,11 +71,11 @@ impl Guard {
     pub fn price(&self) -> PriceRow {
         let mut with = |count: u64| _ = black_box((self.with.work)(black_box(count)));
         let mut without = |count: u64| _ = black_box((self.without.work)(black_box(count)));
-        let times = in_turns(ROUNDS, &mut with, &mut without, LEVEL);
+        let times = interleaved(ROUNDS, &mut with, &mut without, LEVEL);
         self.row((self.with.error)(), (self.without.error)(), times)
     }
 
-    fn row(&self, with: Measured, without: Measured, times: Option<InTurns>) -> PriceRow {
+    fn row(&self, with: Measured, without: Measured, times: Option<Interleaved>) -> PriceRow {
         PriceRow {
             guard: self.name.to_string(),
             error: self.error.to_string(),

@@ -2,7 +2,7 @@
 
 use super::failed;
 use crate::error::{Error, Result};
-use crate::lab::{LOOK, Master, RankRule, Way, is_small};
+use crate::lab::{Distribution, LOOK, Master, RankRule, is_small};
 use crate::measure::Share;
 use crate::strategy::{ChunkRule, LearnedRule, Ledger, Seen};
 use pathmark_mpi::{Counter, World};
@@ -32,34 +32,37 @@ fn chunks_of(rule: ChunkRule, jobs: usize, ranks: usize) -> Vec<Range<usize>> {
 /// The resources with which ranks share jobs by a rule; made before the clock starts.
 pub(super) struct HandOut<'a> {
     world: &'a World,
-    way: Way,
+    distribution: Distribution,
     counter: Option<Counter<'a>>,
 }
 
 impl<'a> HandOut<'a> {
     pub(super) fn new(rule: &RankRule, world: &'a World, share: &mut Share<'_>) -> Result<Self> {
-        if let Way::Dealt(deal) = rule.way() {
+        if let Distribution::Static(deal) = rule.distribution() {
             let jobs: Vec<usize> = deal(world.rank(), world.size(), share.plan().len()).collect();
             share.reserve(&jobs)?;
         }
-        let counter =
-            if matches!(rule.way(), Way::Counted(_)) { Some(Counter::new(world).map_err(failed)?) } else { None };
-        Ok(Self { world, way: rule.way(), counter })
+        let counter = if matches!(rule.distribution(), Distribution::SharedCounter(_)) {
+            Some(Counter::new(world).map_err(failed)?)
+        } else {
+            None
+        };
+        Ok(Self { world, distribution: rule.distribution(), counter })
     }
 
     /// Runs this rank's jobs until none is left for it.
     pub(super) fn run(&mut self, share: &mut Share<'_>) -> Result<Wait> {
         let (world, jobs) = (self.world, share.plan().len());
-        match self.way {
-            Way::Dealt(deal) => {
+        match self.distribution {
+            Distribution::Static(deal) => {
                 share.render(deal(world.rank(), world.size(), jobs).collect())?;
                 Ok(Wait::default())
             }
-            Way::Counted(rule) => {
+            Distribution::SharedCounter(rule) => {
                 let chunks = chunks_of(rule, jobs, world.size());
                 self.counter.as_mut().map_or(Ok(Wait::default()), |counter| counted(counter, &chunks, world, share))
             }
-            Way::Asked(master, rule) => {
+            Distribution::Master(master, rule) => {
                 let ranks = if master == Master::Only { world.size() - 1 } else { world.size() };
                 let stock = || Stock::Chunks(chunks_of(rule, jobs, ranks).into_iter());
                 match (world.rank(), master) {
@@ -68,11 +71,11 @@ impl<'a> HandOut<'a> {
                     _ => ask(world, share),
                 }
             }
-            Way::Told(rule) if world.rank() == 0 => {
+            Distribution::Adaptive(rule) if world.rank() == 0 => {
                 let ledger = Box::new(Ledger::new(jobs, world.size(), rule.weights));
                 answer_at_once(Stock::Learned(rule, ledger), world, share)
             }
-            Way::Told(_) => ask(world, share),
+            Distribution::Adaptive(_) => ask(world, share),
         }
     }
 

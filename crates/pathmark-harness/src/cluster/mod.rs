@@ -13,7 +13,7 @@ use crate::digest;
 use crate::error::{Error, InputError, Result};
 use crate::kernel::REVISION;
 use crate::lab::RankRule;
-use crate::measure::{Gathered, Outcome, Setup};
+use crate::measure::{MergedShare, Outcome, Setup};
 use hand_out::HandOut;
 pub use message_costs::{MessageCost, MessageCosts};
 use pathmark_mpi::{MpiError, World};
@@ -138,7 +138,7 @@ impl Cluster {
         rule: &RankRule,
         sections: &[Range<u32>],
         tally: &mut Tally,
-    ) -> Result<Option<Gathered>> {
+    ) -> Result<Option<MergedShare>> {
         let (world, threads) = (&self.world, setup.threads());
         let mut share = setup.share(sections)?;
         let mut hand_out = HandOut::new(rule, world, &mut share)?;
@@ -170,7 +170,7 @@ impl Cluster {
         drop(done);
         let done =
             wire::jobs(&words, share.plan()).ok_or_else(|| Error::Check("a rank sent invalid jobs".to_string()))?;
-        Ok(Some(Gathered { done, workers: world.size() * threads, makespan_s }))
+        Ok(Some(MergedShare { done, workers: world.size() * threads, makespan_s }))
     }
 }
 

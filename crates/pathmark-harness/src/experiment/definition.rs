@@ -47,9 +47,9 @@
 //! reference-spp = 2000
 //! ```
 
+use super::stopping_rule::StoppingRule;
 use super::table::{Matrix, Scale, one_or_many};
 use super::texts::experiments;
-use super::until::Until;
 use super::{Chapter, External, Profile, Timeout};
 use crate::error::{Error, InputError, Result};
 use crate::input::{locate, locate_in, parse, read_text};
@@ -259,7 +259,7 @@ impl Definition {
     }
 
     /// The goal at which repetitions stop; `None` if their number is fixed.
-    pub(super) fn until(&self, profile: Profile) -> Result<Option<&Until>> {
+    pub(super) fn until(&self, profile: Profile) -> Result<Option<&StoppingRule>> {
         Ok(self.scale(profile)?.until.as_ref())
     }
 

@@ -1,6 +1,6 @@
 //! The options with which an experiment is run: those of the command line.
 
-use super::{Profile, SweepShard, Timeout, Until};
+use super::{Profile, StoppingRule, SweepShard, Timeout};
 use std::path::PathBuf;
 
 /// Options of a sweep.
@@ -23,7 +23,7 @@ pub struct Options {
     /// The figure that compares with serial runs. Filters then keep the serial runs, and there must be at least one.
     pub serial_for: Option<&'static str>,
     /// The goal at which repetitions stop; `None` for the definition's.
-    pub until: Option<Until>,
+    pub until: Option<StoppingRule>,
     /// The time limit of each cell; `None` for the definition's.
     pub timeout: Option<Timeout>,
     /// Whether cells with doubtful rows are run again.

@@ -32,7 +32,7 @@ pub(super) fn answer(mut command: Command, line: &str, limit: Option<Duration>) 
         Err(RecvTimeoutError::Timeout) => Ok(None),
         Err(RecvTimeoutError::Disconnected) => Err(io::Error::other("the thread that listens to it has ended")),
     });
-    // Until the child has been waited for, its process id is not reused, so no other group can be killed.
+    // StoppingRule the child has been waited for, its process id is not reused, so no other group can be killed.
     killpg(own, Signal::SIGKILL).ok();
     let status = child.wait()?;
     Ok(heard?.map(|[stdout, stderr]| Output { status, stdout, stderr }))

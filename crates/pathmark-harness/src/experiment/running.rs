@@ -3,9 +3,9 @@
 use super::against::Against;
 use super::drift::Drift;
 use super::records_file::RecordsFile;
+use super::stopping_rule::{Decisions, Goal};
 use super::sweep::{Summary, Sweep};
 use super::time_limit::Limits;
-use super::until::{Decisions, Goal};
 use super::{Cell, CellPoint, HalfFile, Progress, Reference};
 use crate::error::Result;
 use crate::measure::{Doubts, LeftOut, Record, Settings};

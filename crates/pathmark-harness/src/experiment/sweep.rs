@@ -11,8 +11,8 @@ use super::records_file::RecordsFile;
 use super::run_file::{RunFile, read_run_file};
 use super::running::Running;
 use super::shuffle::shuffled;
+use super::stopping_rule::{MOST_REPETITIONS, StoppingRule};
 use super::time_limit::{Limits, TIMED_OUT};
-use super::until::{MOST_REPETITIONS, Until};
 use super::{
     Cell, CellJob, CellPoint, Definition, HalfFile, Keep, Options, PointJob, Progress, Reference, render_reference,
     wanted_references,
@@ -65,7 +65,7 @@ pub struct Sweep<'a> {
     pub(super) options: &'a Options,
     pub(super) cells: Vec<Cell>,
     pub(super) references: Vec<Reference>,
-    pub(super) until: Option<Until>,
+    pub(super) until: Option<StoppingRule>,
 }
 
 impl<'a> Sweep<'a> {
@@ -115,7 +115,7 @@ impl<'a> Sweep<'a> {
         for name in OWN_FILES {
             files.claims("out", &folder.join(name))?;
         }
-        let until = Until::of(definition, options)?;
+        let until = StoppingRule::of(definition, options)?;
         Ok(Self { definition, options, cells, references, until })
     }
 

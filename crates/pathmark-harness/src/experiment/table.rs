@@ -1,7 +1,7 @@
 //! The tables of a definition that give values to axes: `[matrix]`, and a table for each profile.
 
 use super::definition::REFERENCE_SPP;
-use super::until::{MOST_REPETITIONS, Until};
+use super::stopping_rule::{MOST_REPETITIONS, StoppingRule};
 use super::{Profile, Timeout};
 use crate::measure::{AXES, Axis, Field, Settings, available_threads};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
@@ -27,7 +27,7 @@ pub(super) struct Table<const PROFILE: bool> {
     pub(super) repetitions: u32,
     /// The largest number of repetitions of the matrix's cells.
     pub(super) at_most: Option<u32>,
-    pub(super) until: Option<Until>,
+    pub(super) until: Option<StoppingRule>,
     pub(super) reference_spp: Option<u32>,
     /// The time limit of a profile's cells.
     pub(super) timeout: Option<Timeout>,
@@ -85,7 +85,7 @@ impl<const PROFILE: bool> Table<PROFILE> {
 enum Repetitions {
     Count(u32),
     #[serde(rename_all = "kebab-case")]
-    Until {
+    StoppingRule {
         until: String,
         at_most: Option<u32>,
         within: Option<String>,
@@ -184,9 +184,9 @@ impl<'de, const PROFILE: bool> Visitor<'de> for TableVisitor<PROFILE> {
                 (None, "repetitions") if !PROFILE => table.at_most = Some(map.next_value::<NonZeroU32>()?.get()),
                 (None, "repetitions") => match map.next_value()? {
                     Repetitions::Count(count) => (table.repetitions, table.until) = (count, None),
-                    Repetitions::Until { until, at_most, within } => {
+                    Repetitions::StoppingRule { until, at_most, within } => {
                         table.repetitions = at_most.unwrap_or(MOST_REPETITIONS);
-                        table.until = Some(Until::parse(&until, within.as_deref()).map_err(M::Error::custom)?);
+                        table.until = Some(StoppingRule::parse(&until, within.as_deref()).map_err(M::Error::custom)?);
                     }
                 },
                 (None, TIMEOUT) => table.timeout = Some(map.next_value()?),

@@ -59,24 +59,24 @@ pub enum Master {
     Working,
 }
 
-/// The way in which ranks get their jobs.
+/// How ranks get their jobs.
 #[derive(Debug, Clone, Copy)]
-pub enum Way {
+pub enum Distribution {
     /// Each rank knows its jobs beforehand.
-    Dealt(Deal),
+    Static(Deal),
     /// A free rank takes the next number from a counter in the memory of rank 0.
-    Counted(ChunkRule),
+    SharedCounter(ChunkRule),
     /// A free rank asks rank 0.
-    Asked(Master, ChunkRule),
+    Master(Master, ChunkRule),
     /// A free rank asks rank 0, which also renders, and reports the time of its last chunk.
-    Told(LearnedRule),
+    Adaptive(LearnedRule),
 }
 
 /// A rank rule, with its text as the user wrote it.
 #[derive(Debug, Clone)]
 pub struct RankRule {
     text: String,
-    way: Way,
+    distribution: Distribution,
 }
 
 impl fmt::Display for RankRule {
@@ -87,14 +87,14 @@ impl fmt::Display for RankRule {
 
 impl RankRule {
     /// Returns the way in which ranks get their jobs under this rule.
-    pub fn way(&self) -> Way {
-        self.way
+    pub fn distribution(&self) -> Distribution {
+        self.distribution
     }
 
     /// Returns an error if `ranks` ranks cannot follow this rule.
     pub fn check(&self, ranks: usize) -> Result<()> {
-        match self.way {
-            Way::Asked(Master::Only, _) if ranks < 2 => {
+        match self.distribution {
+            Distribution::Master(Master::Only, _) if ranks < 2 => {
                 let problem = format!("needs at least one rank besides the master, but the number of ranks is {ranks}");
                 let error = InputError::new("ranks", &self.text, problem);
                 Err(error.allowed("2 ranks or more, as in mpiexec -n 2").into())
@@ -109,24 +109,24 @@ impl Lab {
     /// the text: an option or an axis.
     pub fn rank_rule(&self, field: &'static str, text: &str) -> Result<RankRule> {
         let (name, parameter) = text.split_once(':').map_or((text, None), |(name, rest)| (name, Some(rest)));
-        let way = match name {
-            MASTER_WORKER => chunks_of(parameter).map(|rule| Way::Asked(Master::Only, rule)),
-            WORKING_MASTER => chunks_of(parameter).map(|rule| Way::Asked(Master::Working, rule)),
-            _ if RULES.contains(&name) => self.way_of_strategy(name, parameter),
+        let distribution = match name {
+            MASTER_WORKER => chunks_of(parameter).map(|rule| Distribution::Master(Master::Only, rule)),
+            WORKING_MASTER => chunks_of(parameter).map(|rule| Distribution::Master(Master::Working, rule)),
+            _ if RULES.contains(&name) => self.distribution_of_strategy(name, parameter),
             _ => None,
         };
-        way.map(|way| RankRule { text: text.to_string(), way }).ok_or_else(|| {
+        distribution.map(|distribution| RankRule { text: text.to_string(), distribution }).ok_or_else(|| {
             let problem = "is not a valid rule for sharing jobs among processes";
             InputError::new(field, text, problem).allowed(RULES.join(", ")).into()
         })
     }
 
-    fn way_of_strategy(&self, name: &str, parameter: Option<&str>) -> Option<Way> {
+    fn distribution_of_strategy(&self, name: &str, parameter: Option<&str>) -> Option<Distribution> {
         let entry = self.strategies().iter().find(|entry| entry.name == name)?;
         match entry.discipline(parameter).ok()? {
-            Discipline::Chunks(rule) => Some(Way::Counted(rule)),
-            Discipline::Learned(rule) => Some(Way::Told(rule)),
-            Discipline::Dealt(deal) => Some(Way::Dealt(deal)),
+            Discipline::Chunks(rule) => Some(Distribution::SharedCounter(rule)),
+            Discipline::Learned(rule) => Some(Distribution::Adaptive(rule)),
+            Discipline::Dealt(deal) => Some(Distribution::Static(deal)),
             _ => None,
         }
     }

@@ -7,7 +7,7 @@
 //! Techniques for Image Synthesis", 1991). The numbers of samples follow from scene and settings alone, so the checksum
 //! does not depend on the schedule.
 
-use super::run::{Account, Watch};
+use super::run::{RunTotals, Watch};
 use super::{Outcome, Settings, Setup};
 use crate::error::{InputError, Result};
 use crate::film::{Film, SampleGrid};
@@ -57,11 +57,11 @@ impl Setup {
         let pilot_s = before.elapsed().as_secs_f64();
         self.check_size(grid.plan_size(self.decomposition()))?;
         let plan = grid.plan(self.decomposition());
-        let mut account = Account::new();
+        let mut totals = RunTotals::new();
         let spec = &self.settings().spec;
-        let films = account.round(self, plan, from_ref(&(0..grid.largest())), watch)?;
+        let films = totals.round(self, plan, from_ref(&(0..grid.largest())), watch)?;
         let film = films.into_iter().next().unwrap_or_else(|| Film::new(spec.width, spec.height));
-        let mut outcome = account.outcome(self, self.settings().spp, film);
+        let mut outcome = totals.outcome(self, self.settings().spp, film);
         outcome.pilot_s += pilot_s;
         Ok(outcome)
     }

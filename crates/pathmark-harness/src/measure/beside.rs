@@ -18,13 +18,13 @@ use std::time::Instant;
 const BATCH_S: f64 = 0.25;
 
 /// The pieces that have been claimed; without a device, all belong to the workers.
-pub(super) struct Claims {
+pub(super) struct PieceClaims {
     taken: Vec<AtomicBool>,
     /// Number of pieces that are not claimed.
     left: AtomicUsize,
 }
 
-impl Claims {
+impl PieceClaims {
     /// Returns claims for `pieces` pieces, all unclaimed; nothing is kept without a device.
     pub(super) fn new(pieces: usize, has_device: bool) -> Self {
         let pieces = if has_device { pieces } else { 0 };
@@ -65,7 +65,7 @@ impl Kernel for Rendered {
 /// Data that the devices and the workers share.
 pub(super) struct Shared<'a> {
     pub(super) plan: &'a Plan,
-    pub(super) claims: &'a Claims,
+    pub(super) claims: &'a PieceClaims,
     pub(super) ledger: &'a Ledger,
     pub(super) output: &'a dyn Output,
 }
@@ -174,7 +174,7 @@ mod tests {
     #[test]
     fn a_device_renders_the_remaining_pieces() {
         let plan = Decomposition::parse("tiles:4x4").unwrap().plan(40, 20, &(0..16));
-        let (claims, ledger) = (Claims::new(plan.len(), true), Ledger::new(plan.len()));
+        let (claims, ledger) = (PieceClaims::new(plan.len(), true), Ledger::new(plan.len()));
         assert!(claims.take(7));
         ledger.record(7, Instant::now(), Counts::default);
         let output = Delivered(Mutex::default(), plan.clone());
@@ -195,7 +195,7 @@ mod tests {
     /// Workers and a device claim each piece once.
     #[test]
     fn each_piece_is_claimed_once() {
-        let claims = Claims::new(10_000, true);
+        let claims = PieceClaims::new(10_000, true);
         let claimed = AtomicUsize::new(0);
         thread::scope(|scope| {
             for _ in 0..2 {
@@ -208,6 +208,6 @@ mod tests {
             claimed.fetch_add(mine, Ordering::Relaxed);
         });
         assert_eq!((claimed.into_inner(), claims.left()), (10_000, 0));
-        assert!(Claims::new(10, false).take(3));
+        assert!(PieceClaims::new(10, false).take(3));
     }
 }

@@ -4,9 +4,9 @@
 //! Each round has its own plan; the strategy is made once. Only rendering is timed. A round may end inside a block of
 //! [`crate::film::SAMPLE_BLOCK`] samples, but the next round then renders the samples of that block again.
 
-use super::run::{Account, RoundTimes, Watch};
+use super::run::{RoundTimes, RunTotals, Watch};
 use super::settings::check_spp;
-use super::{Gathered, History, Outcome, Setup};
+use super::{History, MergedShare, Outcome, Setup};
 use crate::error::{InputError, Result};
 use crate::film::{Film, GrowingFilm, Shard};
 use crate::film_file::FilmKey;
@@ -16,7 +16,7 @@ use std::ops::Range;
 pub struct Rounds {
     setup: Setup,
     shard: Option<Shard>,
-    account: Account,
+    totals: RunTotals,
     film: GrowingFilm,
 }
 
@@ -34,19 +34,19 @@ impl Rounds {
             shard.check(spec.width, spec.height, spp)?;
         }
         let film = GrowingFilm::new(spec.width, spec.height, shard.map_or(0, |shard| shard.samples(spp).start));
-        Ok(Self { setup, shard, account: Account::new(), film })
+        Ok(Self { setup, shard, totals: RunTotals::new(), film })
     }
 
     /// Continues with a film of the same settings, and its counts as far as they are known, instead of the samples so
     /// far.
     pub fn adopt(&mut self, film: GrowingFilm, history: History) {
         self.film = film;
-        self.account.history = history;
+        self.totals.history = history;
     }
 
     /// Renders until there are `spp` samples per pixel. Does nothing if there are as many already: films do not shrink.
     pub fn extend_to(&mut self, spp: u32, watch: Watch<'_>) -> Result<RoundTimes> {
-        self.extend(spp, |Self { setup, shard, account, .. }, sections| {
+        self.extend(spp, |Self { setup, shard, totals, .. }, sections| {
             let plan = setup.plan_of(sections)?;
             let plan = match shard {
                 Some(shard) => {
@@ -55,7 +55,7 @@ impl Rounds {
                 }
                 None => plan,
             };
-            account.round(setup, plan, sections, watch)
+            totals.round(setup, plan, sections, watch)
         })
     }
 
@@ -64,10 +64,10 @@ impl Rounds {
     pub fn extend_by(
         &mut self,
         spp: u32,
-        render: impl FnOnce(&Setup, &[Range<u32>]) -> Result<Gathered>,
+        render: impl FnOnce(&Setup, &[Range<u32>]) -> Result<MergedShare>,
     ) -> Result<RoundTimes> {
-        self.extend(spp, |Self { setup, account, .. }, sections| {
-            account.assemble(setup, sections, render(setup, sections)?)
+        self.extend(spp, |Self { setup, totals, .. }, sections| {
+            totals.assemble(setup, sections, render(setup, sections)?)
         })
     }
 
@@ -86,7 +86,7 @@ impl Rounds {
         for (samples, film) in sections.into_iter().zip(films) {
             self.film.add(samples, film);
         }
-        Ok(self.account.last)
+        Ok(self.totals.last)
     }
 
     /// The setup of the render.
@@ -123,7 +123,7 @@ impl Rounds {
 
     /// The counts of the film's paths.
     pub fn history(&self) -> &History {
-        &self.account.history
+        &self.totals.history
     }
 
     /// The key of the film so far.
@@ -138,7 +138,7 @@ impl Rounds {
 
     /// The outcome of all rounds.
     pub fn outcome(&self) -> Outcome {
-        self.account.outcome(&self.setup, self.spp(), self.film())
+        self.totals.outcome(&self.setup, self.spp(), self.film())
     }
 }
 

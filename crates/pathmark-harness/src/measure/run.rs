@@ -1,6 +1,6 @@
 //! A run: jobs handed to a strategy, once or in several rounds, timed and verified.
 
-use super::beside::{Claims, Shared};
+use super::beside::{PieceClaims, Shared};
 use super::foreign_load::FOREIGN_SHARE;
 use super::history::History;
 use super::invalid::{InvalidSample, first_invalid};
@@ -106,10 +106,10 @@ impl Setup {
             return self.run_adaptive(watch);
         }
         let (spec, spp) = (&self.settings().spec, self.settings().spp);
-        let mut account = Account::new();
-        let films = account.round(self, self.plan(), from_ref(&(0..spp)), watch)?;
+        let mut totals = RunTotals::new();
+        let films = totals.round(self, self.plan(), from_ref(&(0..spp)), watch)?;
         let film = films.into_iter().next().unwrap_or_else(|| Film::new(spec.width, spec.height));
-        Ok(account.outcome(self, spp, film))
+        Ok(totals.outcome(self, spp, film))
     }
 }
 
@@ -127,7 +127,7 @@ pub struct RoundTimes {
 }
 
 /// The totals of all rounds of a run so far. The strategy is made for the first round and kept.
-pub(super) struct Account {
+pub(super) struct RunTotals {
     strategy: Option<Box<dyn Strategy>>,
     rounds: u32,
     plan: Plan,
@@ -149,7 +149,7 @@ pub(super) struct Account {
     reserve: Cell<Reserve>,
 }
 
-impl Account {
+impl RunTotals {
     pub(super) fn new() -> Self {
         Self {
             strategy: None,
@@ -199,7 +199,7 @@ impl Account {
             films,
             threads: setup.settings().threads.min(available_threads()),
         })?;
-        let claims = Claims::new(plan.len(), !kernel.beside().is_empty());
+        let claims = PieceClaims::new(plan.len(), !kernel.beside().is_empty());
         let run = Arc::new(Run { kernel: Arc::clone(&kernel), claims, ledger: Ledger::new(plan.len()), output });
         let strategy = match &mut self.strategy {
             Some(strategy) => strategy,
@@ -352,7 +352,7 @@ fn watched<T>(run: &Run, watch: Watch<'_>, work: impl FnOnce() -> Result<T>) -> 
 /// Data that all jobs of a round share.
 struct Run {
     kernel: Arc<dyn Kernel>,
-    claims: Claims,
+    claims: PieceClaims,
     ledger: Ledger,
     output: Box<dyn Output>,
 }

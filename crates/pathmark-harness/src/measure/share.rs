@@ -4,7 +4,7 @@
 //! film.
 
 use super::ledger::Ledger;
-use super::run::{Account, Round, Timed};
+use super::run::{Round, RunTotals, Timed};
 use super::{JobSpan, Outcome, Setup};
 use crate::error::{Error, Result};
 use crate::film::{Film, Plan, Sections, TileBuffer};
@@ -52,7 +52,7 @@ struct Handout {
 }
 
 /// The jobs of a round that several processes rendered.
-pub struct Gathered {
+pub struct MergedShare {
     /// All of them, in any order.
     pub done: Vec<DoneJob>,
     /// Workers of all processes together.
@@ -153,19 +153,24 @@ impl Share<'_> {
 
 impl Setup {
     /// The outcome of the run that several shares make together.
-    pub fn assembled(&self, gathered: Gathered) -> Result<Outcome> {
+    pub fn assembled(&self, gathered: MergedShare) -> Result<Outcome> {
         let (spec, samples) = (&self.settings().spec, 0..self.settings().spp);
-        let mut account = Account::new();
-        let films = account.assemble(self, from_ref(&samples), gathered)?;
+        let mut totals = RunTotals::new();
+        let films = totals.assemble(self, from_ref(&samples), gathered)?;
         let film = films.into_iter().next().unwrap_or_else(|| Film::new(spec.width, spec.height));
-        Ok(account.outcome(self, samples.end, film))
+        Ok(totals.outcome(self, samples.end, film))
     }
 }
 
-impl Account {
+impl RunTotals {
     /// Merges a round of several shares: returns the film of each section. Each job must have been done once.
-    pub(super) fn assemble(&mut self, setup: &Setup, sections: &[Range<u32>], gathered: Gathered) -> Result<Vec<Film>> {
-        let Gathered { mut done, workers, makespan_s } = gathered;
+    pub(super) fn assemble(
+        &mut self,
+        setup: &Setup,
+        sections: &[Range<u32>],
+        gathered: MergedShare,
+    ) -> Result<Vec<Film>> {
+        let MergedShare { mut done, workers, makespan_s } = gathered;
         let spec = &setup.settings().spec;
         let (kernel, build_s) = setup.kernel()?;
         let plan = setup.ordered(setup.plan_of(sections)?, &*kernel);

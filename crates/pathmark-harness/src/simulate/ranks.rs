@@ -7,7 +7,7 @@
 
 use super::contender::Contender;
 use super::hardware::{Hardware, Speeds};
-use crate::lab::{LOOK, Master, Way, is_small};
+use crate::lab::{Distribution, LOOK, Master, is_small};
 use crate::strategy::{ChunkRule, LearnedRule, Ledger, Seen};
 use serde::Serialize;
 use std::ops::Range;
@@ -57,17 +57,17 @@ struct Rank {
 
 impl Cluster<'_> {
     /// Seconds from handing over jobs of these costs until all are done.
-    pub fn makespan_s(&self, costs: &[f64], way: Way) -> f64 {
+    pub fn makespan_s(&self, costs: &[f64], distribution: Distribution) -> f64 {
         let ranks = self.crew.ranks;
-        match way {
-            Way::Dealt(deal) => {
+        match distribution {
+            Distribution::Static(deal) => {
                 let jobs = |rank| deal(rank, ranks, costs.len()).map(|job| costs[job]).collect::<Vec<f64>>();
                 (0..ranks).map(|rank| self.chunk(rank, &jobs(rank)).0).fold(0.0, f64::max)
             }
-            Way::Counted(rule) => self.counted(costs, rule),
-            Way::Asked(Master::Only, rule) => self.with_a_master(costs, rule),
-            Way::Asked(Master::Working, rule) => self.with_a_working_master(costs, rule),
-            Way::Told(rule) => self.told(costs, rule),
+            Distribution::SharedCounter(rule) => self.counted(costs, rule),
+            Distribution::Master(Master::Only, rule) => self.with_a_master(costs, rule),
+            Distribution::Master(Master::Working, rule) => self.with_a_working_master(costs, rule),
+            Distribution::Adaptive(rule) => self.told(costs, rule),
         }
     }
 
@@ -204,9 +204,9 @@ mod tests {
     fn makespan_s(rule: &str, ranks: usize, threads: usize, messages: Messages, costs: &[f64]) -> f64 {
         let strategy = within(if threads == 1 { "serial" } else { "shared-counter" });
         let crew = Crew { ranks, threads };
-        let way = Lab::new().rank_rule("ranks", rule).unwrap().way();
+        let distribution = Lab::new().rank_rule("ranks", rule).unwrap().distribution();
         let hardware = Hardware::default();
-        Cluster { crew, within: &strategy, messages, hardware }.makespan_s(costs, way)
+        Cluster { crew, within: &strategy, messages, hardware }.makespan_s(costs, distribution)
     }
 
     /// If messages cost nothing, ranks of one thread behave as the threads of one process in the simulator for threads.
@@ -271,7 +271,7 @@ mod tests {
         let hardware = Hardware { speeds: Speeds::OneSlow(0.5), ..Hardware::default() };
         let crew = Crew { ranks: 2, threads: 1 };
         let cluster = Cluster { crew, within: &strategy, messages: Messages::default(), hardware };
-        let at = |rule: &str| cluster.makespan_s(&costs, Lab::new().rank_rule("ranks", rule).unwrap().way());
+        let at = |rule: &str| cluster.makespan_s(&costs, Lab::new().rank_rule("ranks", rule).unwrap().distribution());
         assert_eq!(at("static-blocks"), 300.0);
         assert!((200.0..=202.0).contains(&at("dynamic:1")), "{}", at("dynamic:1"));
         assert!((200.0..=205.0).contains(&at("awf-c")), "{}", at("awf-c"));

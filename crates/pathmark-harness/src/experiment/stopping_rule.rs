@@ -53,7 +53,7 @@ impl Goal {
 
 /// The rule by which repetitions stop.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Until {
+pub struct StoppingRule {
     /// The goal of a sweep.
     pub goal: Goal,
     /// The goal as the user gave it.
@@ -62,7 +62,7 @@ pub struct Until {
     pub within: Option<Duration>,
 }
 
-impl Until {
+impl StoppingRule {
     /// Parses a goal (`3%`, `0.03`, `fastest` or `order`) and a time (`60s`).
     pub fn parse(goal: &str, within: Option<&str>) -> Result<Self> {
         let length = |text: &str| -> Result<Duration> {
@@ -286,7 +286,7 @@ mod tests {
 
     #[test]
     fn goals_have_words() {
-        let goal = |text: &str| Until::parse(text, None).map(|until| until.goal);
+        let goal = |text: &str| StoppingRule::parse(text, None).map(|until| until.goal);
         assert_eq!(goal("fastest").unwrap(), Goal::Fastest);
         assert_eq!((goal("order").unwrap(), goal("3 %").unwrap()), (Goal::Order, Goal::Share(0.03)));
         for wrong in ["slowest", "0%", "-1%"] {

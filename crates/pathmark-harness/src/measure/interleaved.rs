@@ -11,7 +11,7 @@ const MOST_DOUBLINGS: u32 = 40;
 
 /// Nanoseconds per operation of either, and the ratio of the first to the second.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct InTurns {
+pub struct Interleaved {
     /// Median nanoseconds per operation of the first.
     pub first_ns: f64,
     /// Median nanoseconds per operation of the second.
@@ -22,7 +22,12 @@ pub struct InTurns {
 
 /// Times both in `rounds` rounds: each is called once per round, and they take turns to be called first. The argument
 /// of a call is the number of operations to run. `None` for fewer than two rounds.
-pub fn in_turns(rounds: usize, first: &mut dyn FnMut(u64), second: &mut dyn FnMut(u64), level: f64) -> Option<InTurns> {
+pub fn interleaved(
+    rounds: usize,
+    first: &mut dyn FnMut(u64),
+    second: &mut dyn FnMut(u64),
+    level: f64,
+) -> Option<Interleaved> {
     let of_first = operations(|count| time(first, count));
     let of_second = operations(|count| time(second, count));
     let mut times: Vec<[f64; 2]> = Vec::with_capacity(rounds);
@@ -38,7 +43,7 @@ pub fn in_turns(rounds: usize, first: &mut dyn FnMut(u64), second: &mut dyn FnMu
     let column = |index: usize| times.iter().map(|row| row[index]).collect::<Vec<f64>>();
     let ratios: Vec<f64> = times.iter().map(|[a, b]| a / b).collect();
     let interval: Interval = median_interval(&ratios, level)?;
-    Some(InTurns {
+    Some(Interleaved {
         first_ns: median(&column(0))?,
         second_ns: median(&column(1))?,
         ratio: Estimate { value: median(&ratios)?, interval },
@@ -79,10 +84,10 @@ mod tests {
                 sleep(ROUND);
             }
         };
-        let found = in_turns(6, &mut call('a'), &mut call('b'), 0.95).unwrap();
+        let found = interleaved(6, &mut call('a'), &mut call('b'), 0.95).unwrap();
         assert_eq!(*calls.borrow(), "ababbaabbaabba");
         assert!(found.ratio.interval.contains(found.ratio.value) && found.first_ns >= 2e6 && found.second_ns >= 2e6);
-        assert_eq!(in_turns(1, &mut call('a'), &mut call('b'), 0.95), None);
+        assert_eq!(interleaved(1, &mut call('a'), &mut call('b'), 0.95), None);
     }
 
     /// Quick operations are run twice as often each time, until they can be timed.
