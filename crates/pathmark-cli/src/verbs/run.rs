@@ -6,7 +6,7 @@ use crate::console::Talk;
 use crate::console::output::{lock_folder, print};
 use crate::error::{Error, Result};
 use crate::experiment::{
-    Definition, LARGEST_REPETITIONS, Options, Progress, Sweep, SweepShard, Timeout, Until, folder_against,
+    Definition, LARGEST_REPETITIONS, Options, Progress, StoppingRule, Sweep, SweepShard, Timeout, folder_against,
 };
 use crate::files::Files;
 use crate::lab::Lab;
@@ -89,7 +89,11 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         against: arguments.against.clone(),
         shard: arguments.shard.as_deref().map(SweepShard::parse).transpose()?,
         serial_for: figure_of_serial(&definition),
-        until: arguments.until.as_deref().map(|limit| Until::parse(limit, arguments.within.as_deref())).transpose()?,
+        until: arguments
+            .until
+            .as_deref()
+            .map(|limit| StoppingRule::parse(limit, arguments.within.as_deref()))
+            .transpose()?,
         timeout: arguments.timeout.as_deref().map(Timeout::parse).transpose()?,
         rerun_doubtful: arguments.rerun_doubtful,
         count_instructions: arguments.count_instructions,
