@@ -9,7 +9,7 @@ use crate::math::{Vec3, dot};
 use earcut::Earcut;
 
 /// Most corners of a face: ear clipping takes up to the square of their number.
-pub(super) const MOST_CORNERS: usize = 1 << 16;
+pub(super) const MOST_CORNERS: usize = 1 << 12;
 
 /// Corners farther than this from a common plane, as a share of the polygon's extent, make it bent: its shape then
 /// depends on the cut.
