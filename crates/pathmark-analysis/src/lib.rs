@@ -4,6 +4,7 @@
 //! that is not finite, a spread of zero as divisor) gives `None`, never NaN.
 
 pub mod aa_test;
+pub mod adjacent_pairs;
 pub mod autocorrelation;
 pub mod balance;
 pub mod bootstrap;
