@@ -18,6 +18,7 @@ pub mod guard_prices;
 pub mod image_io;
 pub mod lab;
 pub mod lock;
+pub mod machine;
 pub mod measure;
 pub mod metric;
 pub mod shell;
