@@ -23,8 +23,8 @@ mod rank_rule;
 
 use crate::error::{InputError, Result};
 use crate::estimator::{ESTIMATORS, Entry as EstimatorEntry, Estimator};
-use crate::kernel::OwnEstimator;
 use crate::kernel::workload::{self, WORKLOADS, Workload};
+use crate::kernel::{CustomEstimator, KernelEntry, TABLES, Tables};
 use crate::scene::{Library, OwnScene, Scene};
 use crate::shell;
 use crate::strategy::{Entry as Strategy, STRATEGIES, StrategyError};
@@ -44,7 +44,8 @@ pub struct Lab {
     name: Option<&'static str>,
     version: Option<&'static str>,
     strategies: Vec<Strategy>,
-    estimators: Vec<OwnEstimator>,
+    kernels: Vec<KernelEntry>,
+    estimators: Vec<CustomEstimator>,
     workloads: Vec<workload::Entry>,
     scenes: Library,
     experiments: Vec<(String, String)>,
@@ -75,6 +76,7 @@ impl Lab {
             name: None,
             version: None,
             strategies: STRATEGIES.to_vec(),
+            kernels: TABLES.kernels.to_vec(),
             estimators: Vec::new(),
             workloads: WORKLOADS.to_vec(),
             scenes: Library::default(),
@@ -122,13 +124,23 @@ impl Lab {
         self
     }
 
+    /// Adds a kernel, whose plan says for each scene whether it can render it.
+    #[must_use]
+    #[track_caller]
+    pub fn kernel(mut self, entry: KernelEntry) -> Self {
+        let taken = self.kernels.iter().any(|known| known.is_meant_by(entry.name) || entry.is_meant_by(known.name));
+        self.note("kernel", entry.name, taken, Location::caller());
+        self.kernels.push(entry);
+        self
+    }
+
     /// Adds an estimator.
     #[must_use]
     #[track_caller]
     pub fn estimator<E: Estimator + 'static>(mut self, name: &'static str, estimator: E) -> Self {
         let taken = self.estimators().any(|known| known.name == name);
         self.note("estimator", name, taken, Location::caller());
-        self.estimators.push(OwnEstimator::new(name, estimator));
+        self.estimators.push(CustomEstimator::new(name, estimator));
         self
     }
 
@@ -204,14 +216,19 @@ impl Lab {
         }
     }
 
-    /// Returns the estimators, in the order in which they are listed.
-    pub fn estimators(&self) -> impl Iterator<Item = &EstimatorEntry> {
-        ESTIMATORS.iter().chain(self.estimators.iter().map(OwnEstimator::entry))
+    /// Returns the kernels, in the order in which they are listed.
+    pub fn kernels(&self) -> &[KernelEntry] {
+        &self.kernels
     }
 
-    /// Returns the estimators that a program added.
-    pub fn own_estimators(&self) -> &[OwnEstimator] {
-        &self.estimators
+    /// Returns the tables from which a kernel is chosen and built.
+    pub fn kernel_tables(&self) -> Tables<'_> {
+        Tables { kernels: &self.kernels, estimators: &self.estimators }
+    }
+
+    /// Returns the estimators, in the order in which they are listed.
+    pub fn estimators(&self) -> impl Iterator<Item = &EstimatorEntry> {
+        ESTIMATORS.iter().chain(self.estimators.iter().map(CustomEstimator::entry))
     }
 
     /// Returns the workloads, in the order in which they are listed.

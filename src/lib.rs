@@ -24,8 +24,8 @@
 //!
 //! # Where to start
 //!
-//! * To add your own pool, estimator, workload, scene or experiment: [`Lab`]. The package's `examples/own_*.rs` are
-//!   such programs.
+//! * To add your own pool, kernel, estimator, workload, scene or experiment: [`Lab`]. The package's `examples/own_*.rs`
+//!   and `examples/custom_kernel.rs` are such programs.
 //! * To test your own pool: [`strategy`], a crate without the renderer, and its contract.
 //! * To render from a program, as above: [`measure::Setup`]; [`image_io`] writes the picture, [`metric`] compares two.
 //! * To analyse measurements: [`analysis`], and [`simulate`] for workers that the machine does not have.
@@ -96,9 +96,11 @@ pub use lab::Lab;
 #[doc(inline)]
 pub use pathmark_analysis as analysis;
 #[doc(inline)]
-pub use pathmark_strategy as strategy;
+pub use pathmark_lanes::kernel;
 #[doc(hidden)]
-pub use pathmark_tracer::simd;
+pub use pathmark_lanes::{sampler, simd};
+#[doc(inline)]
+pub use pathmark_strategy as strategy;
 use pathmark_tracer::{digest, input};
 #[doc(inline)]
-pub use pathmark_tracer::{effect, error, estimator, film, kernel, material, math, sampling, scene};
+pub use pathmark_tracer::{effect, error, estimator, film, material, math, sampling, scene};

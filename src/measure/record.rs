@@ -5,7 +5,7 @@ use super::{Outcome, Settings, Setup, Warning, utc_now};
 use crate::analysis::quantile::median;
 use crate::error::Result;
 use crate::image_io::Image;
-use crate::kernel::Choice;
+use crate::kernel::RenderOptions;
 use crate::kernel::workload::WORKLOAD;
 use crate::metric;
 use crate::scene::{Filter, Scene};
@@ -328,12 +328,13 @@ impl Record {
         let described = described(setup.settings());
         let mut record = Self { scene: setup.name().to_string(), scene_hash: setup.hash(), ..described };
         let choice = setup.scene().map(|(_, choice)| choice);
-        record.max_depth = choice.and_then(Choice::depth);
-        record.camera_rays = choice.map(Choice::camera_rays).filter(|rays| *rays > 1);
-        record.roulette = choice.and_then(Choice::roulette).map(|rule| rule.to_string()).unwrap_or_default();
-        record.precision = choice.map_or(Precision::F64, Choice::precision).name().to_string();
-        record.kernel = choice.map_or(WORKLOAD, Choice::kernel).to_string();
+        record.max_depth = choice.and_then(RenderOptions::depth);
+        record.camera_rays = choice.map(RenderOptions::camera_rays).filter(|rays| *rays > 1);
+        record.roulette = choice.and_then(RenderOptions::roulette).map(|rule| rule.to_string()).unwrap_or_default();
+        record.precision = choice.map_or(Precision::F64, RenderOptions::precision).name().to_string();
+        record.kernel = choice.map_or(WORKLOAD, RenderOptions::kernel).to_string();
         if let Some(choice) = choice {
+            record.estimator = choice.estimator().name.to_string();
             record.biased = choice.is_biased();
             record.clamp = choice.clamp().map(|clamp| clamp.to_string()).unwrap_or_default();
             record.filter = choice.filter().map(Filter::name).unwrap_or_default().to_string();

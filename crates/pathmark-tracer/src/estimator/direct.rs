@@ -9,7 +9,7 @@ use crate::scene::{Hit, POINT_LIGHT, PointLight, REACH, Scene, Standpoint, Tests
 
 /// The part of the distance to a light in which a surface can hide it. A light that lies in a surface is not hidden by
 /// it: the rest is larger than a distance's rounding error. It is relative, so it is the same in scenes of any size.
-pub(crate) const HIDING: f64 = 1.0 - 1.0 / (1_u64 << 40) as f64;
+pub const HIDING: f64 = 1.0 - 1.0 / (1_u64 << 40) as f64;
 
 /// The straight line to a light.
 struct Way {

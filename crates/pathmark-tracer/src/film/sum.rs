@@ -80,7 +80,7 @@ impl SampleSum {
 
     /// Adds the sum of the next blocks, which was computed elsewhere. All parts but the last have the same number of
     /// blocks, a power of two.
-    pub(crate) fn add_part(&mut self, part: PixelSum, is_last: bool) {
+    pub fn add_part(&mut self, part: PixelSum, is_last: bool) {
         self.block = part;
         if !is_last {
             self.carry();

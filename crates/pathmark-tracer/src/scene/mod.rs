@@ -25,10 +25,9 @@ pub use feature::{
 pub use fog::Fog;
 pub use generator::GENERATORS;
 pub use hierarchy::{
-    ACCELERATORS, Bounds, Child, Content, Entry as Accelerator, Gathered, Hierarchy, Scan, Tests, TreeStore,
+    ACCELERATORS, Bounds, DEEPEST, Entry as Accelerator, Faces, Hierarchy, Node, Scan, Slabs, Tests, TreeStore,
     accelerator, padding,
 };
-pub(crate) use hierarchy::{DEEPEST, Slabs};
 pub use library::{Library, load};
 pub use light::{Aim, Lights, one_minus_cos};
 pub use light::{AnyTarget, NO_LIGHT, TriangleTarget, per_steradian, point_of, towards_cap};
@@ -317,12 +316,12 @@ impl Scene {
     }
 
     /// Adds the lights for next-event estimation, as paths from that view can reach them.
-    pub(crate) fn add_lights(&mut self, view: &View) {
+    pub fn add_lights(&mut self, view: &View) {
         self.lights = Some(self.lights_for(view));
     }
 
     /// Returns the lights for next-event estimation, as paths from that view can reach them.
-    pub(crate) fn lights_for(&self, view: &View) -> Lights {
+    pub fn lights_for(&self, view: &View) -> Lights {
         Lights::of(self, &view.origins())
     }
 
@@ -335,7 +334,7 @@ impl Scene {
 
     /// Returns the hierarchy of that accelerator over its primitives, from the store if it holds it; `None` if the
     /// accelerator builds none.
-    pub(crate) fn hierarchy_by(&self, name: &str, store: Option<&dyn TreeStore>) -> Result<Option<Hierarchy>> {
+    pub fn hierarchy_by(&self, name: &str, store: Option<&dyn TreeStore>) -> Result<Option<Hierarchy>> {
         let accelerator = accelerator(Some(name), 0, Scan::OneByOne);
         accelerator.map_or(Ok(None), |accelerator| accelerator.build(self.primitives.bounds(), store))
     }

@@ -12,7 +12,7 @@ mod costs;
 mod mandelbrot;
 mod sum;
 
-use super::{Counts, Kernel};
+use super::render::{Counts, Kernel};
 use crate::film::{Piece, SampleSum, TileBuffer};
 use crate::math::Rgb;
 use std::fmt;

@@ -86,11 +86,11 @@ pub const fn padding(digits: u32) -> f64 {
 
 /// The smallest and the largest coordinates of a box: an array, so that a direction's sign selects one without a
 /// branch.
-pub(crate) type Faces = [[f64; 3]; 2];
+pub type Faces = [[f64; 3]; 2];
 
 /// A ray prepared for box tests.
 #[derive(Clone, Copy)]
-pub(crate) struct Slabs {
+pub struct Slabs {
     /// The origin, moved forward and backward by its share of the padding: distances to near and far faces start there.
     near: [f64; 3],
     far: [f64; 3],
@@ -102,7 +102,8 @@ pub(crate) struct Slabs {
 
 impl Slabs {
     #[inline(always)]
-    pub(crate) fn new(ray: &Ray) -> Self {
+    /// Prepares the ray.
+    pub fn new(ray: &Ray) -> Self {
         let origin = [ray.origin.x, ray.origin.y, ray.origin.z];
         let direction = [ray.direction.x, ray.direction.y, ray.direction.z];
         let padding = padding(f64::MANTISSA_DIGITS) * origin[0].abs().max(origin[1].abs()).max(origin[2].abs());
@@ -123,7 +124,7 @@ impl Slabs {
     /// A ray along a face gives 0 times infinity, NaN, for that axis. The comparisons then keep the result of the other
     /// axes, so the box is not missed because of this one.
     #[inline(always)]
-    pub(crate) fn enter(&self, faces: &Faces, limit: f64) -> Option<f64> {
+    pub fn enter(&self, faces: &Faces, limit: f64) -> Option<f64> {
         let (mut enter, mut leave) = (0.0_f64, limit);
         for (axis, backward) in self.backward.into_iter().enumerate() {
             let first = (faces[usize::from(backward)][axis] - self.near[axis]) * self.inverse[axis];

@@ -17,7 +17,7 @@ use std::thread::{Builder, available_parallelism, scope};
 pub(super) const UNBALANCED: usize = 32;
 
 /// The deepest level: halving 2^32 primitives after [`UNBALANCED`] levels.
-pub(crate) const DEEPEST: usize = UNBALANCED + 32;
+pub const DEEPEST: usize = UNBALANCED + 32;
 
 /// The most primitives of a node that are sorted, with every place between two of them tried. For a million triangles,
 /// the tree whose larger nodes are divided by bins costs within a few percent of the fully sorted tree.

@@ -82,7 +82,7 @@ impl Triangle {
 impl Primitives {
     /// Returns the triangle of that number; `None` if the primitive is no triangle.
     #[inline(always)]
-    pub(crate) fn triangle(&self, primitive: u32) -> Option<&Triangle> {
+    pub fn triangle(&self, primitive: u32) -> Option<&Triangle> {
         self.triangles.get((primitive as usize).checked_sub(self.spheres.len() + self.planes.len())?)
     }
 
@@ -119,7 +119,7 @@ impl Primitives {
 
     /// Returns a function from a primitive's number to its distance along the ray; NaN without a sure hit. The ray's
     /// coordinates have `digits` binary digits.
-    pub(crate) fn sure_distances(&self, ray: &Ray, from: Option<Standpoint>, digits: u32) -> impl Fn(u32) -> f64 {
+    pub fn sure_distances(&self, ray: &Ray, from: Option<Standpoint>, digits: u32) -> impl Fn(u32) -> f64 {
         let prepared = Self::prepare(ray);
         let own = from.and_then(|from| self.triangle(from.primitive));
         move |primitive| {

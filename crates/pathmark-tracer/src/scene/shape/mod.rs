@@ -242,7 +242,7 @@ shapes! {
 impl Nearest {
     /// Returns a search's initial state: no primitive, and only hits nearer than `t` count.
     #[inline(always)]
-    pub(crate) fn than(t: f64) -> Self {
+    pub fn than(t: f64) -> Self {
         Self { t, primitive: u32::MAX }
     }
 
@@ -261,7 +261,7 @@ impl Nearest {
     /// Likewise, for primitives in any order. A hit exactly at the initial limit, where no primitive is, does not
     /// count.
     #[inline(always)]
-    pub(crate) fn or_in_any_order(self, distance: f64, primitive: u32) -> Self {
+    pub fn or_in_any_order(self, distance: f64, primitive: u32) -> Self {
         let ahead = if distance > 0.0 { distance } else { f64::INFINITY };
         let comes_first = primitive < self.primitive && self.primitive != u32::MAX;
         let wins = ahead < self.t || (ahead == self.t && comes_first);
@@ -271,7 +271,7 @@ impl Nearest {
     /// Likewise, for the primitive on which a ray starts and leads inside. Its start may be rounded to outside the box
     /// of that primitive, so a search in a hierarchy begins with it.
     #[inline(always)]
-    pub(crate) fn or_own(self, from: Option<Standpoint>, distance: impl FnOnce(u32) -> f64) -> Self {
+    pub fn or_own(self, from: Option<Standpoint>, distance: impl FnOnce(u32) -> f64) -> Self {
         match from {
             Some(Standpoint { primitive, inside: true }) => self.or_in_any_order(distance(primitive), primitive),
             _ => self,
