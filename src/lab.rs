@@ -25,7 +25,7 @@ use crate::error::{InputError, Result};
 use crate::estimator::{ESTIMATORS, Entry as EstimatorEntry, Estimator};
 use crate::kernel::workload::{self, WORKLOADS, Workload};
 use crate::kernel::{CustomEstimator, KernelEntry, TABLES, Tables};
-use crate::scene::{Library, OwnScene, Scene};
+use crate::scene::{CustomScene, Library, Scene};
 use crate::shell;
 use crate::strategy::{Entry as Strategy, STRATEGIES, StrategyError};
 pub use rank_rule::{LOOK, Master, RankRule, Way, is_small};
@@ -150,7 +150,7 @@ impl Lab {
     pub fn workload(mut self, name: &'static str, workload: impl Workload) -> Self {
         let taken = self.is_subject(name);
         self.note("workload", name, taken, Location::caller());
-        self.workloads.push(workload::Entry::own(name, workload));
+        self.workloads.push(workload::Entry::custom(name, workload));
         self
     }
 
@@ -160,7 +160,7 @@ impl Lab {
     pub fn scene(mut self, name: &str, text: &str) -> Self {
         let taken = self.is_subject(name);
         self.note("scene", name, taken, Location::caller());
-        self.scenes.add(OwnScene { name: name.to_string(), text: text.to_string() });
+        self.scenes.add(CustomScene { name: name.to_string(), text: text.to_string() });
         self
     }
 

@@ -8,7 +8,7 @@ use crate::check::random::Random;
 use crate::check::stage::{ANY_CAMERA, DIFFUSE, GLASS, ball, try_scene};
 use crate::check::{Case, Trials};
 use crate::math::{Frame, Ray, Vec3};
-use crate::scene::{Scene, Standpoint};
+use crate::scene::{Scene, SurfaceOrigin};
 use std::f64::consts::TAU;
 
 pub(super) const CASES: &[Case] = &[
@@ -89,7 +89,7 @@ fn chords(
             let cos = cosine(&mut random);
             let direction = frame.to_world(Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos)).normalized();
             let ray = Ray { origin: center + normal * radius, direction };
-            let hit = intersect(&scene, &ray, Some(Standpoint { primitive: 0, inside: true }));
+            let hit = intersect(&scene, &ray, Some(SurfaceOrigin { primitive: 0, inside: true }));
             let error = hit.filter(|hit| hit.primitive == 0).map_or(f64::NAN, |hit| (hit.t - 2.0 * radius * cos).abs());
             worst = worst.max(error);
             wrong += u64::from(error.is_nan() || error > tolerance);

@@ -5,7 +5,7 @@ use crate::check::bare_scene::{intersect, searches};
 use crate::check::random::Random;
 use crate::check::{Case, Trials};
 use crate::math::{Frame, Ray, Vec3, dot};
-use crate::scene::{AllEffects, Hit, Scene, Standpoint, load};
+use crate::scene::{AllEffects, Hit, Scene, SurfaceOrigin, load};
 use std::f64::consts::TAU;
 
 pub(super) const CASES: &[Case] = &[
@@ -91,7 +91,7 @@ fn sunken_balls(trials: &mut Trials) {
                 wrong += u64::from(!is_right && (rho - circle).abs() > BAND);
                 // A ray up from the floor inside the ball must hit the ball from within.
                 let Some(hit) = hit.filter(|hit| name(&scene, hit) == "floor" && rho < circle - BAND) else { continue };
-                let from = Some(Standpoint { primitive: hit.primitive, inside: true });
+                let from = Some(SurfaceOrigin { primitive: hit.primitive, inside: true });
                 let up = intersect(&scene, &Ray { origin: hit.point, direction: -down }, from);
                 outside_in += u64::from(!up.is_some_and(|up| name(&scene, &up) == ball && up.inside));
             }

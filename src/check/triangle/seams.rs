@@ -10,7 +10,7 @@ use crate::check::stage::{self, GLASS, camera, diffuse, object, plane, quad};
 use crate::check::{Case, Trials};
 use crate::kernel::Spec;
 use crate::math::{Frame, Ray, Vec3};
-use crate::scene::{Primitive, Primitives, Scene, Standpoint, Triangle};
+use crate::scene::{Primitive, Primitives, Scene, SurfaceOrigin, Triangle};
 use crate::simd::Precision;
 
 pub(super) const CASES: &[Case] = &[
@@ -111,7 +111,7 @@ fn rays_from_seams(trials: &mut Trials) {
                 let flat = random.scale(-6.0, 0.0);
                 let outwards = Frame::around(hit.normal).to_world(Vec3::new(local.x, local.y, local.z.abs() * flat));
                 for (side, inside) in [(outwards, false), (-outwards, true)] {
-                    let from = Some(Standpoint { primitive: hit.primitive, inside });
+                    let from = Some(SurfaceOrigin { primitive: hit.primitive, inside });
                     let ray = Ray { origin: hit.point, direction: side.normalized() };
                     own += u64::from(scene.primitives.triangles[hit.primitive as usize].leave(&ray, inside) > 0.0);
                     let met = intersect(&scene, &ray, from);

@@ -10,7 +10,7 @@ use crate::check::stage::{self, diffuse, object, quad, view};
 use crate::check::{Case, Trials};
 use crate::kernel::{KERNELS, Spec};
 use crate::math::{Ray, Vec3, dot};
-use crate::scene::{ACCELERATORS, Hit, Primitives, Scene, Sphere, Standpoint, Triangle};
+use crate::scene::{ACCELERATORS, Hit, Primitives, Scene, Sphere, SurfaceOrigin, Triangle};
 use crate::simd::Precision;
 
 pub(super) const CASES: &[Case] = &[
@@ -107,7 +107,7 @@ fn compare(trials: &mut Trials, what: &str, scenes: u64, mut primitives: impl Fn
                     let is_blocked = |limit| scene.is_blocked_by_any(&ray, from, limit);
                     *blocked_otherwise += u64::from(is_blocked(hit.t) || !is_blocked(hit.t.next_up()));
                 }
-                from = Some(Standpoint { primitive: hit.primitive, inside: false });
+                from = Some(SurfaceOrigin { primitive: hit.primitive, inside: false });
                 origin = hit.point;
             }
         }

@@ -128,7 +128,7 @@ fn definitions(effects: Effects, rules: &PathRules, precision: Precision) -> Str
         all.add(&format!("HAS_{}", constant(entry.name)), u8::from(effects.cover(entry.effect)));
     }
     all.add("SPLITS", rules.splits);
-    all.add("AIMS", u8::from(rules.aims.is_some()));
+    all.add("AIMS", u8::from(rules.nee.is_some()));
     all.add("HAS_CAMERA_RAYS", u8::from(rules.camera_rays > 1));
     all.add_numbered(SAMPLERS.iter().map(|(_, name)| *name));
     all.add_numbered(MATERIALS.iter().copied());
@@ -256,7 +256,7 @@ pub(super) fn text(effects: Effects, rules: &PathRules, precision: Precision) ->
 mod tests {
     use super::*;
     use pathmark_device::{DeviceError, inexact_instructions, ptx_of};
-    use pathmark_tracer::estimator::Roulette;
+    use pathmark_tracer::estimator::{LightSampling, Roulette};
     use pathmark_tracer::scene::PROFILES;
 
     /// Types, declared names, shared names and numbers change; fields, comments and other names do not.
@@ -275,9 +275,9 @@ mod tests {
     #[test]
     fn no_code_for_gpus_fuses_or_estimates() {
         let (max_depth, roulette) = (u16::MAX, Roulette::SMALLPT);
-        let rules = |splits, aims, camera_rays| PathRules { splits, aims, max_depth, roulette, camera_rays };
+        let rules = |splits, nee, camera_rays| PathRules { splits, nee, max_depth, roulette, camera_rays };
         for profile in PROFILES {
-            let rules = [rules(0, None, 1), rules(2, None, 1), rules(0, Some(true), 4)];
+            let rules = [rules(0, None, 1), rules(2, None, 1), rules(0, Some(LightSampling::Mis), 4)];
             for (rules, precision) in
                 rules.into_iter().flat_map(|rules| Precision::ALL.map(|precision| (rules, precision)))
             {

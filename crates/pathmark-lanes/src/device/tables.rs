@@ -1,12 +1,12 @@
 //! A scene as arrays of numbers and words, and the layout of both. The program's names of offsets come from here.
 
 use super::settings::ForDevice;
-use crate::lanes::{Singles, surfaces};
-use pathmark_tracer::estimator::{By, camera_share};
+use crate::lanes::{SpheresF32, surfaces};
+use pathmark_tracer::estimator::{By, LightSampling, camera_share};
 use pathmark_tracer::kernel::RenderOptions;
 use pathmark_tracer::material::{Dielectric, Facets, Fresnel, Material, Sampling};
 use pathmark_tracer::math::Precision;
-use pathmark_tracer::math::{Curved, Rgb, Vec3};
+use pathmark_tracer::math::{Rgb, SphereByCurvature, Vec3};
 use pathmark_tracer::sampling::{ORDERS, mix};
 use pathmark_tracer::scene::{AllEffects, AnyTarget, Bounds, Filter, Hierarchy, Object, Scene, padding};
 
@@ -261,12 +261,12 @@ impl Tables {
 
     /// Adds the data of primitives for single precision: large spheres by curvature, and surfaces for shading.
     fn add_singles(&mut self, scene: &Scene, enclosing: &[u32]) {
-        let large = Singles::large(scene, enclosing);
+        let large = SpheresF32::large(scene, enclosing);
         let (count, curved) = large.in_order();
         self.set_words("AT_ENCLOSING_COUNT", &[count as u32]);
         self.set_words("AT_LARGE_COUNT", &[curved.len() as u32]);
         self.add_words("AT_LARGE_NUMBERS", curved.iter().map(|(number, _)| *number));
-        let numbers = curved.iter().flat_map(|(_, Curved { normal: n, curvature, offset })| {
+        let numbers = curved.iter().flat_map(|(_, SphereByCurvature { normal: n, curvature, offset })| {
             [n.x, n.y, n.z, *curvature, *offset].map(f64::from)
         });
         self.add_numbers("AT_LARGE", numbers);
@@ -318,7 +318,7 @@ impl Tables {
         self.set_words("AT_MAX_DEPTH", &[u32::from(chosen.rules.max_depth)]);
         self.set_words("AT_CAMERA_RAYS", &[u32::from(chosen.rules.camera_rays)]);
         self.set_numbers("VIEW_CAMERA_SHARE", &[camera_share(chosen.rules.camera_rays)]);
-        self.set_words("AT_IS_WEIGHTED", &[u32::from(chosen.rules.aims == Some(true))]);
+        self.set_words("AT_IS_WEIGHTED", &[u32::from(chosen.rules.nee == Some(LightSampling::Mis))]);
         let seed = mix(options.seed());
         self.set_words("AT_SEED_KEY", &[seed as u32, (seed >> 32) as u32]);
         self.set_words("AT_SAMPLER", &[chosen.sampler]);

@@ -2,7 +2,7 @@
 
 use super::bvh::{Stacks, Wide};
 use super::filter::Filter;
-use super::spheres_f32::Singles;
+use super::spheres_f32::SpheresF32;
 use super::tables::Tables;
 use super::targets::Targets;
 use crate::sampler::InLanes as Sampler;
@@ -46,7 +46,7 @@ pub(super) enum Search {
     /// Few primitives, all of them spheres: a quick formula tests every sphere, and an exact one confirms the nearest.
     Filter(Filter),
     /// The same primitives by the formulas of single precision.
-    Singles(Singles),
+    SpheresF32(SpheresF32),
     /// Any primitives: one ray at a time.
     Wide(Box<Wide>),
 }
@@ -65,7 +65,7 @@ impl Lanes {
                 Search::Wide(Box::new(Wide::of(scene, hierarchy, level, precision, &scene.enclosing(&view))))
             }
             Precision::F64 => Search::Filter(Filter::of(scene)),
-            Precision::F32 => Search::Singles(Singles::of(scene, &scene.enclosing(&view))),
+            Precision::F32 => Search::SpheresF32(SpheresF32::of(scene, &scene.enclosing(&view))),
         };
         let lights = options.estimator().aims.then(|| scene.lights_for(&view));
         Ok(Self {

@@ -7,7 +7,7 @@ use super::rays::{LanesOf, Rays};
 use super::tables::Kind;
 use super::targets::{Met, Start};
 use crate::simd::{Apart, Float, Mask, Words};
-use pathmark_tracer::estimator::{camera_share, power_heuristic};
+use pathmark_tracer::estimator::{LightSampling, camera_share, power_heuristic};
 use pathmark_tracer::kernel::Counts;
 use pathmark_tracer::math::{Bits, Ray, Rgb, Vec3};
 use pathmark_tracer::sampling::Purpose;
@@ -37,7 +37,7 @@ impl<V: Float> Apart for ArrivedAtLight<'_, V> {
 
     #[inline(always)]
     fn run(self) -> V {
-        self.kernel.share_of_arrival(self.packet, self.at, self.lit)
+        self.kernel.mis_weight_bsdf(self.packet, self.at, self.lit)
     }
 }
 
@@ -54,7 +54,7 @@ impl Lanes {
 
     /// The weight of emission that rays met, for rays whose start aimed at light, too; 1 for the others.
     #[inline(always)]
-    fn share_of_arrival<V: Float>(&self, packet: &Packet<'_, V>, at: &Arrival<V>, lit: V::Mask) -> V {
+    fn mis_weight_bsdf<V: Float>(&self, packet: &Packet<'_, V>, at: &Arrival<V>, lit: V::Mask) -> V {
         let (zero, one) = (V::splat(0.0), V::splat(1.0));
         let lanes = lit & zero.le(packet.density);
         if !lanes.any() {
@@ -69,8 +69,8 @@ impl Lanes {
             }
             None => zero,
         };
-        let share = match self.rules.aims {
-            Some(true) => power_heuristic(packet.density, aimed),
+        let share = match self.rules.nee {
+            Some(LightSampling::Mis) => power_heuristic(packet.density, aimed),
             _ => V::select(zero.lt(aimed), zero, one),
         };
         V::select(lanes, share, one)
@@ -106,8 +106,8 @@ impl Lanes {
         let (_, met) = self.nearest(&rays, lit.lanes.bits(), &mut packet.scratch, counts);
         counts.rays += u64::from(lit.lanes.bits().count_ones());
         let [r, g, b, _] = V::rows(&self.tables.emissions, self.tables.rows(aims.primitive));
-        let weight = match self.rules.aims {
-            Some(true) => power_heuristic(aims.density, lit.density),
+        let weight = match self.rules.nee {
+            Some(LightSampling::Mis) => power_heuristic(aims.density, lit.density),
             _ => V::splat(1.0),
         };
         let found = lit.scattered * Rgb { r, g, b } * (weight / aims.density);

@@ -26,6 +26,6 @@ pub(crate) use plan::LANES;
 #[cfg(feature = "device")]
 pub(crate) use plan::MOST_IN_LANES;
 #[cfg(feature = "device")]
-pub(crate) use spheres_f32::Singles;
+pub(crate) use spheres_f32::SpheresF32;
 #[cfg(feature = "device")]
 pub(crate) use tables::surfaces;

@@ -6,7 +6,7 @@ use super::rays::{Found, LanesOf, Rays};
 use crate::simd::{Apart, Float, MOST_LANES, Mask};
 use pathmark_tracer::kernel::Counts;
 use pathmark_tracer::math::{Ray, Vec3};
-use pathmark_tracer::scene::{Standpoint, Tests};
+use pathmark_tracer::scene::{SurfaceOrigin, Tests};
 
 impl Lanes {
     /// Distance and number of the nearest primitive along each ray; the number is -1 if there is none. Lanes that are
@@ -24,7 +24,7 @@ impl Lanes {
                 let (found, is_sure) = filter.nearest(&self.tables, rays);
                 (found, wanted & !is_sure.bits())
             }
-            Search::Singles(singles) if !V::IS_DOUBLE => (singles.scan(rays), 0),
+            Search::SpheresF32(singles) if !V::IS_DOUBLE => (singles.scan(rays), 0),
             Search::Wide(wide) => {
                 Nearest { scene: &self.scene, wide, tables: &self.tables, rays, wanted, scratch, counts }.run()
             }
@@ -79,7 +79,7 @@ impl<T: Copy + Into<f64>> AllRays<T> {
             let ray = Ray { origin: Vec3::new(ox, oy, oz), direction: Vec3::new(dx, dy, dz) };
             // Only a ray into a sphere has another root; a flat primitive has none on either side.
             let inside = !own_root.is_nan();
-            let from = (from >= 0.0).then_some(Standpoint { primitive: from as u32, inside });
+            let from = (from >= 0.0).then_some(SurfaceOrigin { primitive: from as u32, inside });
             let found = match &lanes.search {
                 Search::Wide(wide) => wide.surely_nearest(&lanes.scene, &ray, from, digits, &mut tests),
                 _ => lanes.scene.nearest(&ray, from, digits, &mut tests),

@@ -47,7 +47,7 @@ fn plan(request: &Request<'_>) -> Result<Planned> {
     let is_diffuse = request.scene.objects.iter().all(|object| object.material.effect() == Diffuse::EFFECT);
     // Under next-event estimation, lights take most of the time: code for diffuse surfaces alone would gain 3 %, and
     // take as long to compile as the other versions.
-    let is_diffuse_only = is_diffuse && rules.aims.is_none() && !level.is_fallback();
+    let is_diffuse_only = is_diffuse && rules.nee.is_none() && !level.is_fallback();
     Ok(Planned::Ready(Arc::new(InLanes { level, precision, rules, sampler, is_diffuse_only })))
 }
 

@@ -107,7 +107,7 @@ impl Lanes {
 
 impl Kernel for Lanes {
     fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
-        match (self.rules.aims.is_some(), self.is_diffuse_only) {
+        match (self.rules.nee.is_some(), self.is_diffuse_only) {
             (true, _) => self.render_by::<true, false>(piece, out),
             (false, true) => self.render_by::<false, true>(piece, out),
             (false, false) => self.render_by::<false, false>(piece, out),

@@ -1,7 +1,7 @@
 //! Spheres in single precision: by centre and radius if they are small, by curvature if they are as large as the scene
 //! ([`Scene::large_spheres`]).
 //!
-//! A centre 1e5 away leaves a coordinate of the scene exact to only 0.008 units. [`Curved`] stores
+//! A centre 1e5 away leaves a coordinate of the scene exact to only 0.008 units. [`SphereByCurvature`] stores
 //! values of the scene's own size instead. For spheres that are small next to their distance from the origin it would
 //! be worse: k |x|² is that distance times the ratio of distance to radius.
 //!
@@ -11,14 +11,16 @@
 
 use super::rays::{Found, Rays};
 use crate::simd::Float;
-use pathmark_tracer::math::{Curved, Vec3, curved_quadratic, dot, first_root, first_root_curved, last_root_curved};
+use pathmark_tracer::math::{
+    SphereByCurvature, Vec3, curved_quadratic, dot, first_root, first_root_curved, last_root_curved,
+};
 use pathmark_tracer::scene::Scene;
 
 /// The spheres of a scene, each with the number of its primitive.
-pub(crate) struct Singles {
+pub(crate) struct SpheresF32 {
     /// The large spheres that no path leaves.
-    enclosing: Vec<(f32, Curved<f32>)>,
-    curved: Vec<(f32, Curved<f32>)>,
+    enclosing: Vec<(f32, SphereByCurvature<f32>)>,
+    curved: Vec<(f32, SphereByCurvature<f32>)>,
     /// The small spheres: centres and radii.
     centred: Vec<(f32, Vec3<f32>, f32)>,
 }
@@ -32,15 +34,17 @@ fn splat<V: Float>(v: Vec3<f32>) -> Vec3<V> {
     Vec3 { x: V::splat(v.x.into()), y: V::splat(v.y.into()), z: V::splat(v.z.into()) }
 }
 
-impl Singles {
+impl SpheresF32 {
     pub(super) fn of(scene: &Scene, enclosing_all: &[u32]) -> Self {
         let (mut enclosing, mut curved, mut centred) = (Vec::new(), Vec::new(), Vec::new());
         for ((sphere, is_large), number) in scene.primitives.spheres.iter().zip(scene.large_spheres()).zip(0_u32..) {
             let is_enclosing = enclosing_all.contains(&number);
             let number = number as f32;
             if is_large {
-                let Curved { normal, curvature, offset } = Curved::of(sphere.center, sphere.radius);
-                let sphere = Curved { normal: single(normal), curvature: curvature as f32, offset: offset as f32 };
+                let SphereByCurvature { normal, curvature, offset } =
+                    SphereByCurvature::of(sphere.center, sphere.radius);
+                let sphere =
+                    SphereByCurvature { normal: single(normal), curvature: curvature as f32, offset: offset as f32 };
                 if is_enclosing { &mut enclosing } else { &mut curved }.push((number, sphere));
             } else {
                 centred.push((number, single(sphere.center), sphere.radius as f32));
@@ -55,7 +59,7 @@ impl Singles {
     }
 
     /// The spheres by curvature with their numbers, and how many of them, from the first on, no path leaves.
-    pub(crate) fn in_order(&self) -> (usize, Vec<(u32, Curved<f32>)>) {
+    pub(crate) fn in_order(&self) -> (usize, Vec<(u32, SphereByCurvature<f32>)>) {
         let all = self.enclosing.iter().chain(&self.curved).map(|(number, curved)| (*number as u32, *curved));
         (self.enclosing.len(), all.collect())
     }
@@ -72,7 +76,7 @@ impl Singles {
     }
 
     /// The nearest sphere along each ray. Among equally near spheres the lowest number wins; among large ones, spheres
-    /// that no path leaves win first. A tree over the small ones ([`super::wide`]) finds the same by the same formula.
+    /// that no path leaves win first. A tree over the small ones ([`super::bvh`]) finds the same by the same formula.
     #[inline(always)]
     pub(super) fn scan<V: Float>(&self, rays: &Rays<V>) -> Found<V> {
         let (origin, direction) = (rays.ray.origin, rays.ray.direction);
@@ -102,8 +106,8 @@ impl Singles {
 }
 
 #[inline(always)]
-fn in_lanes<V: Float>(sphere: &Curved<f32>) -> Curved<V> {
-    Curved {
+fn in_lanes<V: Float>(sphere: &SphereByCurvature<f32>) -> SphereByCurvature<V> {
+    SphereByCurvature {
         normal: splat::<V>(sphere.normal),
         curvature: V::splat(sphere.curvature.into()),
         offset: V::splat(sphere.offset.into()),
@@ -119,7 +123,7 @@ mod tests {
     use pathmark_tracer::scene::load;
 
     /// Distance and number found along a ray that starts on the primitive `from` and does not meet it again.
-    struct Find<'a>(&'a Singles, Vec3, Vec3, f64);
+    struct Find<'a>(&'a SpheresF32, Vec3, Vec3, f64);
 
     impl Work for Find<'_> {
         type Output = (f64, f64);
@@ -151,7 +155,7 @@ mod tests {
         let scene = load("sky").unwrap();
         let enclosing = scene.enclosing(&scene.camera.view(4, 4));
         assert_eq!(enclosing, [2]);
-        let singles = Singles::of(&scene, &enclosing);
+        let singles = SpheresF32::of(&scene, &enclosing);
         let [sky, ground] = [2, 3].map(|k: usize| &scene.primitives.spheres[k]);
         let across = ground.center - sky.center;
         let distance = dot(across, across).sqrt();

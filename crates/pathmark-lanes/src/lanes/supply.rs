@@ -127,7 +127,7 @@ impl Lanes {
         let pixel = [V::number(V::Bits::load(columns)), V::number(V::Bits::load(rows))];
         let batch = Batch { pixel, subpixel, words, count: supply.count };
         if self.rules.camera_rays > 1 && batch.count > 0 {
-            let seen = self.seen_besides(&batch, scratch, counts);
+            let seen = self.extra_camera_rays(&batch, scratch, counts);
             for lane in 0..batch.count {
                 window.add_beforehand(supply.slot + lane as u64, colour(&seen, lane));
             }
@@ -152,9 +152,14 @@ impl Lanes {
         self.view.rays(batch.pixel, batch.subpixel, film)
     }
 
-    /// The radiance that the samples' other camera rays see, as in [`pathmark_tracer::estimator::seen_besides`].
+    /// The radiance that the samples' other camera rays see, as in [`pathmark_tracer::estimator::extra_camera_rays`].
     #[inline(always)]
-    fn seen_besides<V: Float>(&self, batch: &Batch<V>, scratch: &mut Scratch<'_, V>, counts: &mut Counts) -> Rgb<V> {
+    fn extra_camera_rays<V: Float>(
+        &self,
+        batch: &Batch<V>,
+        scratch: &mut Scratch<'_, V>,
+        counts: &mut Counts,
+    ) -> Rgb<V> {
         let wanted = u32::MAX >> (MOST_LANES - batch.count);
         let mut seen = Rgb::splat(Rgb::BLACK);
         for number in 1..self.rules.camera_rays {
@@ -219,7 +224,7 @@ impl Lanes {
         if self.rules.splits > 0 {
             packet.branch = V::Bits::choose(mask, none, packet.branch);
         }
-        if self.rules.aims.is_some() {
+        if self.rules.nee.is_some() {
             packet.density = V::select(mask, V::splat(-1.0), packet.density);
         }
         packet.alive |= taken;

@@ -2,7 +2,7 @@
 
 use crate::simd::{Column, Float, Table};
 use pathmark_tracer::material::{Fresnel, Material};
-use pathmark_tracer::math::{Curved, Precision, Rgb, Vec3};
+use pathmark_tracer::math::{Precision, Rgb, SphereByCurvature, Vec3};
 use pathmark_tracer::scene::{AllEffects, Bounds, Object, Scene};
 
 /// Surfaces by the code with which lanes shade them, as a number in a table.
@@ -41,7 +41,7 @@ pub(crate) fn surfaces(scene: &Scene, precision: Precision) -> impl Iterator<Ite
         let (Vec3 { x, y, z }, number) = match precision {
             Precision::F64 => (sphere.center, sphere.radius),
             Precision::F32 => {
-                let curved = Curved::of(sphere.center, sphere.radius);
+                let curved = SphereByCurvature::of(sphere.center, sphere.radius);
                 (curved.normal, curved.curvature)
             }
         };
@@ -61,7 +61,7 @@ pub(super) const MOST_ROWS: usize = 1 << 14;
 
 /// The tables of a scene.
 pub(super) struct Tables {
-    /// A sphere's centre and radius, in single precision its normal and its curvature of [`Curved`]; a plane's normal
+    /// A sphere's centre and radius, in single precision its normal and its curvature of [`SphereByCurvature`]; a plane's normal
     /// and 0; a triangle's normal and its largest coordinate, negated.
     pub(super) surfaces: Table,
     /// The lowest and highest coordinates of triangles, in double precision and up to [`MOST_ROWS`] primitives.

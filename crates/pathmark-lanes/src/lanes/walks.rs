@@ -6,7 +6,7 @@ use crate::simd::Float;
 use pathmark_tracer::kernel::Start;
 use pathmark_tracer::math::{Ray, Vec3, dot, unit};
 use pathmark_tracer::sampling::{mix, uniform_sphere};
-use pathmark_tracer::scene::{AllEffects, Scene, Standpoint, Tests};
+use pathmark_tracer::scene::{AllEffects, Scene, SurfaceOrigin, Tests};
 
 struct Random(u64);
 
@@ -32,13 +32,13 @@ pub(super) fn nearest(scene: &Scene, (ray, from): &Start) -> (f64, f64) {
 pub(super) fn walks(scene: &Scene, count: usize) -> (Vec<Start>, Vec<Start>) {
     let (mut walks, mut edges) = (Vec::new(), Vec::new());
     let mut random = Random(1);
-    let mut start: Option<(Vec3, Standpoint)> = None;
+    let mut start: Option<(Vec3, SurfaceOrigin)> = None;
     while walks.len() < count {
         let (origin, from) = start.map_or((scene.camera.position, None), |(point, from)| (point, Some(from)));
         let rays = [random.direction(), random.direction()].map(|direction| {
             let from = from.map(|from| {
                 let normal = scene.primitives.normal::<AllEffects>(from.primitive, origin);
-                Standpoint { inside: dot(normal, direction) < 0.0, ..from }
+                SurfaceOrigin { inside: dot(normal, direction) < 0.0, ..from }
             });
             (Ray { origin, direction }, from)
         });
@@ -56,7 +56,7 @@ pub(super) fn walks(scene: &Scene, count: usize) -> (Vec<Start>, Vec<Start>) {
         }
         // Back to the camera now and then, and after a ray that meets nothing.
         let is_lost = a < 0.0 || random.unit() < 0.1;
-        start = (!is_lost).then(|| (rays[0].0.at(t), Standpoint { primitive: a as u32, inside: false }));
+        start = (!is_lost).then(|| (rays[0].0.at(t), SurfaceOrigin { primitive: a as u32, inside: false }));
     }
     (walks, edges)
 }

@@ -36,12 +36,12 @@ mod aligned;
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
-mod plain;
+#[cfg(target_arch = "x86_64")]
+mod pair;
+mod portable;
 mod table;
 #[cfg(test)]
 mod tests;
-#[cfg(target_arch = "x86_64")]
-mod two;
 
 pub use aligned::Aligned;
 pub use pathmark_tracer::math::Precision;
@@ -257,7 +257,7 @@ impl Level {
 
     /// Whether it is only for processors that have none of the others; see [`Work::IS_SHORTCUT`].
     pub fn is_fallback(self) -> bool {
-        plain::IS_FALLBACK && matches!(self.0.set, Set::Baseline)
+        portable::IS_FALLBACK && matches!(self.0.set, Set::Baseline)
     }
 }
 
@@ -286,7 +286,7 @@ levels! {
     Avx512: "avx512", "AVX-512 (F, DQ, VL, BW): 512-bit registers, two at a time" => avx512;
     #[cfg(target_arch = "x86_64")]
     Avx2: "avx2", "AVX2 and FMA: 256-bit registers, two at a time" => avx2;
-    Baseline: "baseline", "small arrays that the compiler vectorises: SSE2 or NEON" => plain;
+    Baseline: "baseline", "small arrays that the compiler vectorises: SSE2 or NEON" => portable;
 }
 
 struct OfLevel;

@@ -24,6 +24,9 @@ fn mean(buffer: &TileBuffer) -> f64 {
     buffer.rows().flatten().map(|pixel| pixel.mean().iter().sum::<f64>() / 3.0).sum::<f64>() / f64::from(SIZE * SIZE)
 }
 
+/// A shape at a height, as text of a scene.
+type Shape<'a> = &'a dyn Fn(f64) -> String;
+
 /// The mean in single precision over the mean in double precision, from the same random numbers, less 1.
 fn change(text: &str, estimator: &str) -> f64 {
     let scene = Arc::new(Scene::from_toml(text).unwrap());
@@ -192,7 +195,7 @@ fn surfaces_a_hair_apart_are_told_apart_or_refused() {
             let corners = [corner(-9.0, -9.0), corner(-9.0, 9.0), corner(9.0, 9.0), corner(9.0, -9.0)];
             format!("quad = {{ corners = {corners:?} }}")
         };
-        let kinds: [(&str, [&dyn Fn(f64) -> String; 2]); 5] = [
+        let kinds: [(&str, [Shape<'_>; 2]); 5] = [
             ("balls", [&ball, &ball]),
             ("large spheres", [&ground, &ground]),
             ("planes", [&plane, &plane]),

@@ -56,6 +56,7 @@ impl Roulette {
     }
 
     /// The number of first vertices without roulette.
+    #[inline]
     pub fn after(self) -> u16 {
         self.after
     }

@@ -99,6 +99,7 @@ impl SampleSum {
     }
 
     /// The sum of all samples: the unfinished block, then the subtrees from the smallest up.
+    #[inline]
     pub fn total(&self) -> PixelSum {
         let mut total = self.block;
         for level in 0..32 {

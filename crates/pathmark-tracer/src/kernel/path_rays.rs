@@ -6,7 +6,7 @@ use super::rays::{FirstHits, FoundRays, Start};
 use crate::error::{InputError, Result};
 use crate::estimator::Probe;
 use crate::math::{Ray, Rgb, dot};
-use crate::scene::{Hit, Scene, Standpoint};
+use crate::scene::{Hit, Scene, SurfaceOrigin};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ impl Probe for Segments {
     fn vertex(&mut self, _bounces: u16, ray: &Ray, hit: &Hit, _throughput: Rgb) {
         let from = self.last.map(|last| {
             let inside = dot(last.normal, ray.direction) < 0.0;
-            Standpoint { primitive: last.primitive, inside }
+            SurfaceOrigin { primitive: last.primitive, inside }
         });
         self.rays.push((*ray, from));
         self.last = Some(*hit);

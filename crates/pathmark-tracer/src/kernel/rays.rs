@@ -2,11 +2,11 @@
 
 use super::render::Counts;
 use crate::math::Ray;
-use crate::scene::{Scene, Standpoint, Tests};
+use crate::scene::{Scene, SurfaceOrigin, Tests};
 use std::sync::Arc;
 
 /// A ray, and the side of the primitive that it starts on, if any.
-pub type Start = (Ray, Option<Standpoint>);
+pub type Start = (Ray, Option<SurfaceOrigin>);
 
 /// The result of a search along rays.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -4,7 +4,7 @@ use super::clamp::{Clamp, Clamped};
 use super::options::RenderOptions;
 use super::render::{Counts, Kernel};
 use crate::effect::EffectSet;
-use crate::estimator::{Estimator, Probe, camera_ray, seen_besides};
+use crate::estimator::{Estimator, Probe, camera_ray, extra_camera_rays};
 use crate::film::{Piece, PixelSum, SampleSum, TileBuffer};
 use crate::math::Rgb;
 use crate::sampling::{SampleKey, Sampler};
@@ -68,7 +68,8 @@ impl<E: Estimator, S: Sampler, X: EffectSet> Samples for Compiled<E, S, X> {
         let ray = camera_ray::<S, X, Counts>(&self.view, [x, y], key, 0, &self.sampler, counts);
         let mut radiance = self.estimator.sample::<S, X, Counts>(&self.scene, ray, key, &self.sampler, counts);
         if self.camera_rays > 1 {
-            radiance += seen_besides(&self.scene, &self.view, [x, y], key, self.camera_rays, &self.sampler, counts);
+            radiance +=
+                extra_camera_rays(&self.scene, &self.view, [x, y], key, self.camera_rays, &self.sampler, counts);
         }
         radiance
     }

@@ -24,8 +24,8 @@ pub use ray::Ray;
 pub use real::Real;
 pub use rgb::Rgb;
 pub use sphere::{
-    Curved, curved_normal, curved_quadratic, first_root, first_root_curved, last_root_curved, line_meets, other_root,
-    roots,
+    SphereByCurvature, curved_normal, curved_quadratic, first_root, first_root_curved, last_root_curved, line_meets,
+    other_root, roots,
 };
 pub use triangle::{Crossing, Shear, sheared, triangle_root};
 pub use trig::{COS, SIN, sin_cos_turns};

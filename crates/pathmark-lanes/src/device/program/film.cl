@@ -73,7 +73,7 @@ FN void run_item(u32 item, GLOBAL const stored *numbers, GLOBAL const u32 *words
             key = key_of(words, y * words[AT_WIDTH] + x, sample);
             begin(&p, camera_ray(&s, x, y, &key, 0U));
 #if HAS_CAMERA_RAYS
-            seen = seen_besides(&s, x, y, &key, &e);
+            seen = extra_camera_rays(&s, x, y, &key, &e);
 #endif
         }
         goes_on = follow(&w, &p, &e);

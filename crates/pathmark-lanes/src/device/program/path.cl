@@ -143,7 +143,7 @@ FN void collect_arrived(const walk *w, path *p, rgb radiance) {
 
 #if HAS_CAMERA_RAYS
 // The light that a sample's other camera rays see.
-FN rgb seen_besides(const scene *s, u32 x, u32 y, const sample_key *key, events *e) {
+FN rgb extra_camera_rays(const scene *s, u32 x, u32 y, const sample_key *key, events *e) {
     rgb seen = grey(0.0);
     for (u32 number = 1U; number < s->words[AT_CAMERA_RAYS]; number++) {
         e->rays += 1;

@@ -3,10 +3,10 @@
 
 use super::best::Best;
 use super::coarse::Scale;
-use super::linear::All;
-use super::ray_packet::{Single, Turned};
+use super::linear::Linear;
+use super::ray_packet::{ShearedRay, Single};
 use crate::lanes::rays::LanesOf;
-use crate::lanes::spheres_f32::Singles;
+use crate::lanes::spheres_f32::SpheresF32;
 use crate::simd::{Aligned, Float, Mask, Number, Numbers, Table, prefetch};
 use pathmark_tracer::math::{Crossing, Precision, Real, Vec3, first_root, sheared};
 use pathmark_tracer::scene::{Bounds, Primitive, Primitives};
@@ -47,11 +47,11 @@ pub(super) struct Leaf {
 }
 
 /// Blocks under construction.
-pub(super) struct Making<'a> {
+pub(super) struct BlocksBuilder<'a> {
     primitives: &'a Primitives,
     scale: Scale,
     /// Spheres that are tested elsewhere.
-    large: Option<&'a Singles>,
+    large: Option<&'a SpheresF32>,
     /// Spheres in a block, and triangles in one.
     widths: [usize; 2],
     spheres: Aligned<f32>,
@@ -59,11 +59,11 @@ pub(super) struct Making<'a> {
     triangles: Numbers,
 }
 
-impl<'a> Making<'a> {
+impl<'a> BlocksBuilder<'a> {
     pub(super) fn new(
         primitives: &'a Primitives,
         scale: Scale,
-        large: Option<&'a Singles>,
+        large: Option<&'a SpheresF32>,
         widths: [usize; 2],
         precision: Precision,
     ) -> Self {
@@ -159,8 +159,8 @@ impl<'a> Making<'a> {
     }
 
     /// All primitives, for tests without blocks.
-    pub(super) fn all(&self) -> All {
-        All::of(self.primitives, self.large)
+    pub(super) fn all(&self) -> Linear {
+        Linear::of(self.primitives, self.large)
     }
 
     pub(super) fn made(self) -> Blocks {
@@ -183,7 +183,7 @@ fn column<V: Float>(block: &[V::One], place: usize) -> &[V::One] {
 
 /// Corners in the ray's axes. Their first coordinate is in the place `first`.
 #[inline(always)]
-fn corner<V: Float>(block: &[V::One], first: usize, ray: &Turned<V>) -> [V; 3] {
+fn corner<V: Float>(block: &[V::One], first: usize, ray: &ShearedRay<V>) -> [V; 3] {
     // No axis is above 2; with this explicit bound, places in a block need no check.
     let [x, y, z] = ray.shear.axes.map(|axis| axis.min(2));
     let [ox, oy, oz] = ray.origin;
@@ -202,7 +202,7 @@ impl Leaf {
 }
 
 impl Blocks {
-    /// Distances to the spheres of a block, by the formula of [`Singles`] and with the same bits.
+    /// Distances to the spheres of a block, by the formula of [`SpheresF32`] and with the same bits.
     #[inline(always)]
     fn roots_in_block<W: Float<One = f32>>(&self, block: usize, origin: Vec3, direction: Vec3) -> W {
         let exact = &self.exact[block * OF_EXACT * W::LANES..];

@@ -29,7 +29,7 @@ pub(super) enum Content {
 }
 
 /// A tree whose nodes have many children; the first node is the root, and each node comes after its parent.
-pub(super) struct Gathered {
+pub(super) struct CollapsedBvh {
     /// For each node, its first child and the number of its children.
     nodes: Vec<[u32; 2]>,
     children: Vec<Child>,
@@ -37,7 +37,7 @@ pub(super) struct Gathered {
     order: Vec<u32>,
 }
 
-impl Gathered {
+impl CollapsedBvh {
     /// Creates the tree whose nodes have at most `width` children, which must be 2 or more; the first node is the root.
     /// Of all such trees over this one, it has the least expected cost. It consumes the binary tree, so that its nodes
     /// are freed before the primitives are laid out anew.
@@ -267,8 +267,8 @@ mod tests {
         for (name, width) in [("spheres:9", 2), ("spheres:11", 3), ("spheres:13", 4), ("cornell-tall", 3)] {
             for accelerator in ["median", "sah"] {
                 let tree = load(name).unwrap().accelerated(accelerator).unwrap().hierarchy.unwrap();
-                let gathered = Gathered::of(tree.clone(), width);
-                let nodes: Vec<&[Child]> = gathered.nodes().collect();
+                let collapsed = CollapsedBvh::of(tree.clone(), width);
+                let nodes: Vec<&[Child]> = collapsed.nodes().collect();
                 let found = cost(&nodes, 0, bounds(&tree.nodes()[0]).half_area(), width);
                 let expected = least_of_all(&tree, &sizes(tree.nodes()), 0, width);
                 assert!((found / expected - 1.0).abs() < 1e-5, "{name}, {accelerator}: {found} instead of {expected}");
@@ -285,8 +285,8 @@ mod tests {
             let boxes: Vec<Option<Bounds>> = scene.primitives.bounds().collect();
             for accelerator in ["median", "sah"] {
                 let hierarchy = scene.accelerated(accelerator).unwrap().hierarchy.unwrap();
-                let gathered = Gathered::of(hierarchy, width);
-                let nodes: Vec<&[Child]> = gathered.nodes().collect();
+                let collapsed = CollapsedBvh::of(hierarchy, width);
+                let nodes: Vec<&[Child]> = collapsed.nodes().collect();
                 let mut found: Vec<u32> = Vec::new();
                 let mut waiting = vec![(0_u32, None)];
                 while let Some((node, around)) = waiting.pop() {
@@ -300,7 +300,7 @@ mod tests {
                         match content {
                             Content::Node(inner) => waiting.push((*inner, Some(*own))),
                             Content::Primitives { first, count } => {
-                                let primitives = gathered.primitives(*first, *count);
+                                let primitives = collapsed.primitives(*first, *count);
                                 for primitive in primitives {
                                     let inner = boxes[*primitive as usize].unwrap();
                                     assert_eq!(own.and(&inner), *own, "{name}: {primitive} sticks out");

@@ -1,10 +1,10 @@
 //! Each primitive against the rays of all lanes at a time: for scenes with too few primitives for a hierarchy. With one
 //! ray at a time, each primitive that the ray meets would cost a branch; here it costs one branch for all rays.
 
-use super::ray_packet::{AllTurned, three};
+use super::ray_packet::{ShearedRays, three};
 use crate::lanes::rays::Found;
 use crate::lanes::rays::Rays;
-use crate::lanes::spheres_f32::Singles;
+use crate::lanes::spheres_f32::SpheresF32;
 use crate::simd::{Float, Mask};
 use pathmark_tracer::math::{Crossing, Vec3, first_root};
 use pathmark_tracer::scene::Primitives;
@@ -13,7 +13,7 @@ use pathmark_tracer::scene::Primitives;
 const MOST_CORNERS: usize = 8;
 
 /// The primitives of a scene, except for planes and for spheres that are tested elsewhere.
-pub(super) struct All {
+pub(super) struct Linear {
     /// Numbers, centres and radii.
     spheres: Vec<(f64, Vec3, f64)>,
     groups: Vec<Group>,
@@ -45,8 +45,8 @@ impl Group {
     }
 }
 
-impl All {
-    pub(super) fn of(primitives: &Primitives, large: Option<&Singles>) -> Self {
+impl Linear {
+    pub(super) fn of(primitives: &Primitives, large: Option<&SpheresF32>) -> Self {
         let of_sphere = |(number, sphere): (u32, &pathmark_tracer::scene::Sphere)| {
             let is_here = !large.is_some_and(|large| large.contains(number));
             is_here.then_some((f64::from(number), sphere.center, sphere.radius))
@@ -76,7 +76,7 @@ impl All {
             let root = first_root(offset, rays.ray.direction, V::splat(1.0), V::splat(*radius));
             found.take_in_any_order(number, V::select(rays.from.equal(number), never, root));
         }
-        let turned = AllTurned::of(rays);
+        let turned = ShearedRays::of(rays);
         let mut corners = [three([0.0; 3]); MOST_CORNERS];
         for group in &self.groups {
             for (corner, place) in group.corners.iter().zip(&mut corners) {

@@ -5,7 +5,7 @@
 //! The result does not depend on how many are tested at a time. Preceding tests in single precision have a padding that
 //! covers all rounding errors, and among equally near primitives the lowest number wins. In double precision the result
 //! equals the scalar search's, to the bit. In single precision one formula tests each primitive, with and without a
-//! tree; spheres have the formulas of [`Singles`].
+//! tree; spheres have the formulas of [`SpheresF32`].
 
 mod best;
 mod blocks;

@@ -10,7 +10,7 @@ use pathmark_tracer::math::{Ray, Shear, Vec3, sheared};
 /// load for one of data just stored if both have the same offset in a page, so the speed of searches depended on the
 /// addresses in memory.
 #[repr(align(4096))]
-pub(super) struct Bundle<V: Float> {
+pub(super) struct RayPacket<V: Float> {
     /// Origins, directions, and the primitives that rays start on.
     rows: [[V::One; MOST_LANES]; 7],
     pub(super) coarse: AllCoarse,
@@ -26,7 +26,7 @@ pub(super) struct Bundle<V: Float> {
     pub(super) limits: [f32; MOST_LANES],
 }
 
-impl<V: Float> Bundle<V> {
+impl<V: Float> RayPacket<V> {
     #[inline(always)]
     pub(super) fn empty() -> Self {
         let none = [V::One::default(); MOST_LANES];
@@ -58,7 +58,7 @@ impl<V: Float> Bundle<V> {
         let are_in_range = self.coarse.fill(&rays.ray, scale).bits();
         self.has_triangles = has_triangles;
         if has_triangles {
-            let turned = AllTurned::of(rays);
+            let turned = ShearedRays::of(rays);
             let [x, y, z] = turned.axes(origin);
             for (row, vector) in self.turned.iter_mut().zip([x, y, z].iter().chain(&turned.by)) {
                 vector.store(row);
@@ -77,7 +77,7 @@ impl<V: Float> Bundle<V> {
         let turned = if self.has_triangles {
             let [x, y, z, by_x, by_y, by_z] = self.turned.each_ref().map(|row| row[lane].into());
             let shear = Shear { axes: self.axes[lane], by: three([by_x, by_y, by_z]) };
-            Some(Turned { origin: three([x, y, z]), shear })
+            Some(ShearedRay { origin: three([x, y, z]), shear })
         } else {
             None
         };
@@ -97,11 +97,11 @@ pub(super) struct Single<V: Float> {
     pub(super) from: f64,
     pub(super) coarse: Coarse<V::Single>,
     /// `None` in a scene without triangles.
-    pub(super) turned: Option<Turned<V::Register>>,
+    pub(super) turned: Option<ShearedRay<V::Register>>,
 }
 
 /// A ray in its own axes, repeated in all lanes.
-pub(super) struct Turned<V> {
+pub(super) struct ShearedRay<V> {
     pub(super) origin: [V; 3],
     pub(super) shear: Shear<V>,
 }
@@ -112,14 +112,14 @@ pub(super) fn three<V: Float>([x, y, z]: [f64; 3]) -> [V; 3] {
 }
 
 /// Rays in their own axes: [`pathmark_tracer::math::Shear`] in lanes.
-pub(super) struct AllTurned<V: Float> {
+pub(super) struct ShearedRays<V: Float> {
     origin: Vec3<V>,
     /// Whether the direction's longest component is x, or y.
     pub(super) is_long: [V::Mask; 2],
     pub(super) by: [V; 3],
 }
 
-impl<V: Float> AllTurned<V> {
+impl<V: Float> ShearedRays<V> {
     #[inline(always)]
     pub(super) fn of(rays: &Rays<V>) -> Self {
         let Vec3 { x, y, z } = rays.ray.direction;

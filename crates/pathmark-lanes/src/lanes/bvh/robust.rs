@@ -2,9 +2,9 @@
 
 use super::tree::{IS_LEAF, PLACES, Tree};
 use super::wide::{Search, Wide};
-use crate::lanes::spheres_f32::Singles;
+use crate::lanes::spheres_f32::SpheresF32;
 use pathmark_tracer::math::Ray;
-use pathmark_tracer::scene::{Nearest, Scene, Slabs, Standpoint, Tests};
+use pathmark_tracer::scene::{Nearest, Scene, Slabs, SurfaceOrigin, Tests};
 
 impl Wide {
     /// Finds the same as [`Scene::nearest`] for rays in double precision: boxes with the padding of single precision,
@@ -15,7 +15,7 @@ impl Wide {
         &self,
         scene: &Scene,
         ray: &Ray,
-        from: Option<Standpoint>,
+        from: Option<SurfaceOrigin>,
         digits: u32,
         tests: &mut Tests,
     ) -> Nearest {
@@ -23,7 +23,7 @@ impl Wide {
         let distance = scene.primitives.sure_distances(ray, from, digits);
         let take = |nearest: Nearest, number: u32| nearest.or_in_any_order(distance(number), number);
         let planes = self.planes.iter().map(|(number, _)| *number as u32);
-        let beside = self.large.iter().flat_map(Singles::numbers).chain(planes);
+        let beside = self.large.iter().flat_map(SpheresF32::numbers).chain(planes);
         let mut nearest = beside.fold(Nearest::than(f64::INFINITY), take).or_own(from, &distance);
 
         let scale = self.blocks.scale.0;

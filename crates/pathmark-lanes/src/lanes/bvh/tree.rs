@@ -2,10 +2,10 @@
 //! are tested at a time.
 
 use super::best::Best;
-use super::blocks::{Blocks, Leaf, Making};
+use super::blocks::{Blocks, BlocksBuilder, Leaf};
 use super::coarse::Scale;
-use super::collapse::{Child, Content, Gathered};
-use super::ray_packet::Bundle;
+use super::collapse::{Child, CollapsedBvh, Content};
+use super::ray_packet::RayPacket;
 use crate::lanes::rays::LanesOf;
 use crate::simd::{Aligned, Apart, Float, MOST_LANES, Mask, Table, prefetch};
 use pathmark_tracer::scene::{Bounds, Tests};
@@ -29,18 +29,18 @@ pub(super) const IS_LEAF: u32 = 1 << 31;
 const NOTHING: u32 = u32::MAX;
 
 impl Tree {
-    pub(super) fn of(gathered: &Gathered, width: usize, scale: Scale, making: &mut Making<'_>) -> Self {
+    pub(super) fn of(collapsed: &CollapsedBvh, width: usize, scale: Scale, builder: &mut BlocksBuilder<'_>) -> Self {
         let of_leaf = |child: &Child| match child.content {
             Content::Node(_) => None,
             Content::Primitives { count, .. } => Some(count as usize),
         };
-        let in_leaves = || gathered.children().iter().filter_map(of_leaf);
-        making.make_room(in_leaves());
-        let count = gathered.nodes().len();
+        let in_leaves = || collapsed.children().iter().filter_map(of_leaf);
+        builder.make_room(in_leaves());
+        let count = collapsed.nodes().len();
         let mut faces = Aligned::with_capacity(6 * width * count);
         let mut children = Aligned::with_capacity(width * count);
         let mut leaves = Vec::with_capacity(in_leaves().count());
-        for node in gathered.nodes() {
+        for node in collapsed.nodes() {
             let mut bounds = [Bounds::EMPTY; MOST_LANES];
             bounds.iter_mut().zip(node).for_each(|(bounds, child)| *bounds = scale.padded(&child.bounds));
             for k in 0..6 {
@@ -53,13 +53,13 @@ impl Tree {
                     None => 0,
                     Some(Content::Node(node)) => node,
                     Some(Content::Primitives { first, count }) => {
-                        leaves.push(making.add(gathered.primitives(first, count).iter().copied()));
+                        leaves.push(builder.add(collapsed.primitives(first, count).iter().copied()));
                         (leaves.len() - 1) as u32 | IS_LEAF
                     }
                 })
             }));
         }
-        let counts = gathered.nodes().map(|node| node.len() as u32).collect();
+        let counts = collapsed.nodes().map(|node| node.len() as u32).collect();
         Self { faces, children, counts, leaves }
     }
 }
@@ -69,17 +69,17 @@ impl Tree {
 /// The rays go down the tree in turns. While a ray's box test is computed, there is time to compute some other rays'
 /// tests, too, and no processor predicts where a ray continues. So the boxes of all rays are tested first, and then all
 /// rays continue. Waits for memory overlap in this way.
-pub(super) struct Descent<'a, V: Float> {
+pub(super) struct Traversal<'a, V: Float> {
     pub(super) tree: &'a Tree,
     pub(super) blocks: &'a Blocks,
     pub(super) surfaces: &'a Table,
-    pub(super) rays: &'a mut Bundle<V>,
+    pub(super) rays: &'a mut RayPacket<V>,
     pub(super) wanted: u32,
     pub(super) stacks: &'a mut [Stack; MOST_LANES],
     pub(super) tests: &'a mut Tests,
 }
 
-impl<V: Float> Apart for Descent<'_, V> {
+impl<V: Float> Apart for Traversal<'_, V> {
     type Output = ();
 
     #[inline(always)]
@@ -115,7 +115,7 @@ impl<V: Float> Apart for Descent<'_, V> {
     }
 }
 
-impl<V: Float> Descent<'_, V> {
+impl<V: Float> Traversal<'_, V> {
     #[inline(always)]
     fn leaf(&self, lane: usize) -> &Leaf {
         &self.tree.leaves[(self.stacks[lane].next & !IS_LEAF) as usize]
@@ -217,9 +217,9 @@ const MOST_WAITING: usize = 160;
 
 /// Whether there is room for all children that may wait for a ray at a time, in a tree of these nodes. Each node comes
 /// after its parent.
-pub(super) fn is_shallow(gathered: &Gathered) -> bool {
-    let mut below = vec![0; gathered.nodes().len()];
-    for (index, node) in gathered.nodes().enumerate().rev() {
+pub(super) fn is_shallow(collapsed: &CollapsedBvh) -> bool {
+    let mut below = vec![0; collapsed.nodes().len()];
+    for (index, node) in collapsed.nodes().enumerate().rev() {
         let deepest = node.iter().map(|child| match child.content {
             Content::Node(node) => below[node as usize],
             Content::Primitives { .. } => 0,
@@ -376,15 +376,15 @@ mod tests {
                 let Sizes { register, single: width, .. } = sizes_of(level, precision);
                 let (spheres, nodes) = row(width);
                 let order: Vec<u32> = (0..spheres.len() as u32).collect();
-                assert!(is_shallow(&Gathered::new(nodes[DEPTH - 1..].to_vec(), order.clone())));
-                let gathered = Gathered::new(nodes, order);
-                assert!(spheres.len() > MOST_WAITING + width && !is_shallow(&gathered));
+                assert!(is_shallow(&CollapsedBvh::new(nodes[DEPTH - 1..].to_vec(), order.clone())));
+                let collapsed = CollapsedBvh::new(nodes, order);
+                assert!(spheres.len() > MOST_WAITING + width && !is_shallow(&collapsed));
                 let bounds = spheres.iter().filter_map(Primitive::bounds);
                 let scale = Scale::of(&bounds.fold(Bounds::EMPTY, |all, own| all.and(&own)));
                 let primitives = Primitives { spheres, ..Primitives::default() };
-                let mut making = Making::new(&primitives, scale, None, [width, register], precision);
-                let search = Search::of(Some(&gathered), width, scale, &mut making);
-                let blocks = making.made();
+                let mut builder = BlocksBuilder::new(&primitives, scale, None, [width, register], precision);
+                let search = Search::of(Some(&collapsed), width, scale, &mut builder);
+                let blocks = builder.made();
                 let wide = Wide { large: None, planes: Vec::new(), blocks, search };
                 let last = primitives.spheres.len() - 1;
                 let (distance, number) = on_level(level, precision, Along(&wide));

@@ -13,7 +13,7 @@ use pathmark_tracer::scene::{Scene, Triangle, nearness, padding};
 /// In single precision these are only the rays that start near the plane of their triangle: the padding of boxes covers
 /// the rest.
 #[inline(always)]
-pub(super) fn are_doubtful<V: Float>(
+pub(super) fn are_uncertain<V: Float>(
     scene: &Scene,
     tables: &Tables,
     ray: &Ray<V>,
@@ -99,7 +99,7 @@ mod tests {
                 }
                 let wanted = u32::MAX >> (MOST_LANES - V::LANES);
                 let [by_rows, by_corners] =
-                    tables.each_ref().map(|tables| are_doubtful(scene, tables, &rays.ray, &found, wanted));
+                    tables.each_ref().map(|tables| are_uncertain(scene, tables, &rays.ray, &found, wanted));
                 assert_eq!(by_rows, by_corners);
                 in_doubt += by_rows.count_ones();
             }

@@ -1,14 +1,14 @@
 //! The primitives of a scene for searches by one ray at a time.
 
-use super::blocks::{Blocks, Making};
+use super::blocks::{Blocks, BlocksBuilder};
 use super::coarse::Scale;
-use super::collapse::Gathered;
-use super::linear::All;
-use super::ray_packet::Bundle;
-use super::tree::{Descent, Stack, Tree, is_shallow};
-use super::uncertain::are_doubtful;
+use super::collapse::CollapsedBvh;
+use super::linear::Linear;
+use super::ray_packet::RayPacket;
+use super::tree::{Stack, Traversal, Tree, is_shallow};
+use super::uncertain::are_uncertain;
 use crate::lanes::rays::{Found, Rays};
-use crate::lanes::spheres_f32::Singles;
+use crate::lanes::spheres_f32::SpheresF32;
 use crate::lanes::tables::Tables;
 use crate::simd::{Apart, Float, Level, Sizes, Table, sizes_of};
 use pathmark_tracer::kernel::Counts;
@@ -18,7 +18,7 @@ use pathmark_tracer::scene::{Bounds, Hierarchy, Plane, Scene, Tests};
 /// The primitives of a scene.
 pub(in crate::lanes) struct Wide {
     /// Spheres that single precision stores by curvature: each is tested against all rays at a time.
-    pub(super) large: Option<Singles>,
+    pub(super) large: Option<SpheresF32>,
     /// Planes and the numbers of their primitives, tested likewise.
     pub(super) planes: Vec<(f64, Plane)>,
     pub(super) blocks: Blocks,
@@ -27,7 +27,7 @@ pub(in crate::lanes) struct Wide {
 
 /// Search among the primitives that are neither planes nor large spheres.
 pub(super) enum Search {
-    All(All),
+    Linear(Linear),
     Tree(Tree),
 }
 
@@ -35,10 +35,15 @@ impl Search {
     /// Searches by a tree of these nodes, or without one if it is so deep that more children of a ray may wait than
     /// there is room for. A check for room at each node would cost every search a tenth of its time, and only scenes
     /// made for the purpose have such trees.
-    pub(super) fn of(gathered: Option<&Gathered>, width: usize, scale: Scale, making: &mut Making<'_>) -> Self {
-        match gathered.filter(|gathered| is_shallow(gathered)) {
-            Some(gathered) => Self::Tree(Tree::of(gathered, width, scale, making)),
-            None => Self::All(making.all()),
+    pub(super) fn of(
+        collapsed: Option<&CollapsedBvh>,
+        width: usize,
+        scale: Scale,
+        builder: &mut BlocksBuilder<'_>,
+    ) -> Self {
+        match collapsed.filter(|collapsed| is_shallow(collapsed)) {
+            Some(collapsed) => Self::Tree(Tree::of(collapsed, width, scale, builder)),
+            None => Self::Linear(builder.all()),
         }
     }
 }
@@ -63,7 +68,7 @@ impl<V: Float> Apart for Nearest<'_, '_, V> {
         let Self { scene, wide, tables, rays, wanted, scratch, counts } = self;
         let (found, out_of_range) = wide.nearest(rays, wanted, &tables.surfaces, scratch, counts);
         let has_triangles = wide.blocks.has_triangles;
-        let left = if has_triangles { are_doubtful(scene, tables, &rays.ray, &found, wanted) } else { 0 };
+        let left = if has_triangles { are_uncertain(scene, tables, &rays.ray, &found, wanted) } else { 0 };
         (found, left | out_of_range)
     }
 }
@@ -78,13 +83,13 @@ impl Wide {
         enclosing: &[u32],
     ) -> Self {
         let Sizes { register, single: width, .. } = sizes_of(level, precision);
-        let large = (precision == Precision::F32).then(|| Singles::large(scene, enclosing));
+        let large = (precision == Precision::F32).then(|| SpheresF32::large(scene, enclosing));
         let bounds = scene.primitives.bounds().flatten();
         let scale = Scale::of(&bounds.fold(Bounds::EMPTY, |all, own| all.and(&own)));
-        let mut making = Making::new(&scene.primitives, scale, large.as_ref(), [width, register], precision);
-        let gathered = hierarchy.map(|hierarchy| Gathered::of(hierarchy, width));
-        let search = Search::of(gathered.as_ref(), width, scale, &mut making);
-        let blocks = making.made();
+        let mut builder = BlocksBuilder::new(&scene.primitives, scale, large.as_ref(), [width, register], precision);
+        let collapsed = hierarchy.map(|hierarchy| CollapsedBvh::of(hierarchy, width));
+        let search = Search::of(collapsed.as_ref(), width, scale, &mut builder);
+        let blocks = builder.made();
         let first_plane = scene.primitives.spheres.len() as u32;
         let planes = (first_plane..).map(f64::from).zip(scene.primitives.planes.iter().copied()).collect();
         Self { large, planes, blocks, search }
@@ -120,21 +125,29 @@ impl Wide {
             found.take(rays, V::splat(*number), plane_root(point - rays.ray.origin, rays.ray.direction, normal));
         }
         let tree = match &self.search {
-            Search::All(all) => {
+            Search::Linear(all) => {
                 all.nearest(rays, &mut found);
                 return (found, 0);
             }
             Search::Tree(tree) => tree,
         };
-        let Scratch { stacks, bundle } = scratch;
+        let Scratch { stacks, ray_packet } = scratch;
         let stacks = stacks.first_chunk_mut().expect("who has a tree has stacks");
-        let in_range = bundle.fill(rays, &found, self.blocks.scale, self.blocks.has_triangles);
+        let in_range = ray_packet.fill(rays, &found, self.blocks.scale, self.blocks.has_triangles);
         let out_of_range = if V::IS_DOUBLE { wanted & !in_range } else { 0 };
         let (wanted, mut tests) = (wanted & in_range, Tests::default());
-        V::apart(Descent { tree, blocks: &self.blocks, surfaces, rays: bundle, wanted, stacks, tests: &mut tests });
+        V::apart(Traversal {
+            tree,
+            blocks: &self.blocks,
+            surfaces,
+            rays: ray_packet,
+            wanted,
+            stacks,
+            tests: &mut tests,
+        });
         counts.box_tests += tests.boxes;
         counts.primitive_tests += tests.primitives;
-        (Found { nearest: V::load(&bundle.nearest), primitive: V::load(&bundle.primitive) }, out_of_range)
+        (Found { nearest: V::load(&ray_packet.nearest), primitive: V::load(&ray_packet.primitive) }, out_of_range)
     }
 }
 
@@ -142,13 +155,13 @@ impl Wide {
 pub(in crate::lanes) struct Scratch<'a, V: Float> {
     /// One for each lane, if there is a tree.
     stacks: &'a mut [Stack],
-    bundle: Bundle<V>,
+    ray_packet: RayPacket<V>,
 }
 
 impl<'a, V: Float> Scratch<'a, V> {
     #[inline(always)]
     pub(in crate::lanes) fn new(stacks: &'a mut [Stack]) -> Self {
-        Self { stacks, bundle: Bundle::empty() }
+        Self { stacks, ray_packet: RayPacket::empty() }
     }
 }
 
@@ -161,7 +174,7 @@ pub(super) mod tests {
     use pathmark_tracer::kernel::Start;
     use pathmark_tracer::math::{Frame, Ray, line_meets};
     use pathmark_tracer::sampling::uniform_sphere;
-    use pathmark_tracer::scene::Standpoint;
+    use pathmark_tracer::scene::SurfaceOrigin;
     use pathmark_tracer::scene::{SCENES, load};
 
     /// Compares with the scalar search, and returns the number of rays that are left to it.
@@ -261,7 +274,7 @@ pub(super) mod tests {
             let normal = uniform_sphere([(0.618 * k).fract(), (0.414 * k).fract()]);
             let direction = Frame::around(normal).to_world(Vec3::new(1.0, 0.0, -1e-9)).normalized();
             let origin = sphere.center + normal * sphere.radius;
-            (Ray { origin, direction }, Some(Standpoint { primitive: number, inside: true }))
+            (Ray { origin, direction }, Some(SurfaceOrigin { primitive: number, inside: true }))
         };
         (0..).zip(&scene.primitives.spheres).map(of_sphere).collect()
     }

@@ -8,7 +8,7 @@
 mod double;
 mod single;
 
-use super::two::{HalfMask, PairMask, Two};
+use super::pair::{HalfMask, Pair, PairMask};
 use super::{Apart, Float, Mask, Precision, REVERSED, Words, Work, has_bit_counts};
 use double::F64x4;
 use pathmark_tracer::math::Bits;
@@ -26,8 +26,8 @@ pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
     // SAFETY: `on_level` alone comes here, with a level that has been found on this processor.
     unsafe {
         match precision {
-            Precision::F64 => enter::<Two<F64x4>, W>(work),
-            Precision::F32 => enter::<Two<F32x8>, W>(work),
+            Precision::F64 => enter::<Pair<F64x4>, W>(work),
+            Precision::F32 => enter::<Pair<F32x8>, W>(work),
         }
     }
 }
@@ -166,16 +166,16 @@ impl HalfMask for Mask8 {
 impl PairMask for Mask8 {
     type Half = Mask4;
     #[inline(always)]
-    fn halves(self) -> Two<Mask4> {
+    fn halves(self) -> Pair<Mask4> {
         op!({
             let both = x86::_mm256_castps_si256(self.0);
             let lower = x86::_mm256_cvtepi32_epi64(x86::_mm256_castsi256_si128(both));
             let upper = x86::_mm256_cvtepi32_epi64(x86::_mm256_extracti128_si256::<1>(both));
-            Two(Mask4(x86::_mm256_castsi256_pd(lower)), Mask4(x86::_mm256_castsi256_pd(upper)))
+            Pair(Mask4(x86::_mm256_castsi256_pd(lower)), Mask4(x86::_mm256_castsi256_pd(upper)))
         })
     }
     #[inline(always)]
-    fn of_halves(halves: Two<Mask4>) -> Self {
+    fn of_halves(halves: Pair<Mask4>) -> Self {
         Self(op!(x86::_mm256_castsi256_ps(narrowed(
             x86::_mm256_castpd_si256(halves.0.0),
             x86::_mm256_castpd_si256(halves.1.0)

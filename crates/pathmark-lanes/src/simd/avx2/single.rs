@@ -1,13 +1,13 @@
 //! Single precision: eight numbers in a register.
 
 use super::{F64x4, Mask8, U64x4, narrowed, x86};
-use crate::simd::two::Two;
+use crate::simd::pair::Pair;
 use crate::simd::{Float, Mask, Table};
 use pathmark_tracer::math::{Bits, Real};
 
 register! {
     /// Eight numbers.
-    F32x8(__m256) = 8 f32, Mask8, Two<U64x4>, Self;
+    F32x8(__m256) = 8 f32, Mask8, Pair<U64x4>, Self;
     splat _mm256_set1_ps, load _mm256_loadu_ps, store _mm256_storeu_ps, compare _mm256_cmp_ps, fused _mm256_fmadd_ps,
     add _mm256_add_ps, sub _mm256_sub_ps, mul _mm256_mul_ps, div _mm256_div_ps, xor _mm256_xor_ps,
     sqrt _mm256_sqrt_ps, min _mm256_min_ps, max _mm256_max_ps;
@@ -45,7 +45,7 @@ register! {
             *self = Self::load(&all);
         }
         #[inline(always)]
-        fn number(bits: Two<U64x4>) -> Self {
+        fn number(bits: Pair<U64x4>) -> Self {
             op!({
                 let lower = x86::_mm256_cvtpd_ps(F64x4::number(bits.0).0);
                 let upper = x86::_mm256_cvtpd_ps(F64x4::number(bits.1).0);
@@ -53,7 +53,7 @@ register! {
             })
         }
         #[inline(always)]
-        fn unit(bits: Two<U64x4>) -> Self {
+        fn unit(bits: Pair<U64x4>) -> Self {
             let bits = bits.down::<40>();
             Self(op!(x86::_mm256_cvtepi32_ps(narrowed(bits.0.0, bits.1.0)))) * Self::splat(1.0 / 16_777_216.0)
         }

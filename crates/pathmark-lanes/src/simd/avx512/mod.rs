@@ -8,7 +8,7 @@
 mod double;
 mod single;
 
-use super::two::{HalfMask, PairMask, Two};
+use super::pair::{HalfMask, Pair, PairMask};
 use super::{Apart, Float, Mask, Precision, REVERSED, Words, Work, has_bit_counts};
 use double::F64x8;
 use pathmark_tracer::math::Bits;
@@ -30,8 +30,8 @@ pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
     // SAFETY: `on_level` alone comes here, with a level that has been found on this processor.
     unsafe {
         match precision {
-            Precision::F64 => enter::<Two<F64x8>, W>(work),
-            Precision::F32 => enter::<Two<F32x16>, W>(work),
+            Precision::F64 => enter::<Pair<F64x8>, W>(work),
+            Precision::F32 => enter::<Pair<F32x16>, W>(work),
         }
     }
 }
@@ -155,11 +155,11 @@ mask!(Mask16, u16);
 impl PairMask for Mask16 {
     type Half = Mask8;
     #[inline(always)]
-    fn halves(self) -> Two<Mask8> {
-        Two(Mask8(self.0 as u8), Mask8((self.0 >> 8) as u8))
+    fn halves(self) -> Pair<Mask8> {
+        Pair(Mask8(self.0 as u8), Mask8((self.0 >> 8) as u8))
     }
     #[inline(always)]
-    fn of_halves(halves: Two<Mask8>) -> Self {
+    fn of_halves(halves: Pair<Mask8>) -> Self {
         Self(u16::from(halves.0.0) | u16::from(halves.1.0) << 8)
     }
 }

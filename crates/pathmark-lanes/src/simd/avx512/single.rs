@@ -1,13 +1,13 @@
 //! Single precision: sixteen numbers in a register.
 
 use super::{F64x8, Mask16, U64x8, x86};
-use crate::simd::two::Two;
+use crate::simd::pair::Pair;
 use crate::simd::{Float, Table};
 use pathmark_tracer::math::{Bits, Real};
 
 register! {
     /// Sixteen numbers.
-    F32x16(__m512) = 16 f32, Mask16, Two<U64x8>, Self;
+    F32x16(__m512) = 16 f32, Mask16, Pair<U64x8>, Self;
     splat _mm512_set1_ps, load _mm512_loadu_ps, store _mm512_storeu_ps, compare _mm512_cmp_ps_mask, fused _mm512_fmadd_ps,
     add _mm512_add_ps, sub _mm512_sub_ps, mul _mm512_mul_ps, div _mm512_div_ps, xor _mm512_xor_ps,
     sqrt _mm512_sqrt_ps, min _mm512_min_ps, max _mm512_max_ps;
@@ -38,7 +38,7 @@ register! {
             f64::from(op!(x86::_mm512_reduce_min_ps(self.0)))
         }
         #[inline(always)]
-        fn number(bits: Two<U64x8>) -> Self {
+        fn number(bits: Pair<U64x8>) -> Self {
             op!({
                 let lower = x86::_mm256_castps_pd(x86::_mm512_cvtpd_ps(F64x8::number(bits.0).0));
                 let upper = x86::_mm256_castps_pd(x86::_mm512_cvtpd_ps(F64x8::number(bits.1).0));
@@ -47,7 +47,7 @@ register! {
             })
         }
         #[inline(always)]
-        fn unit(bits: Two<U64x8>) -> Self {
+        fn unit(bits: Pair<U64x8>) -> Self {
             let bits = bits.down::<40>();
             let numbers = op!({
                 let lower = x86::_mm512_castsi256_si512(x86::_mm512_cvtepi64_epi32(bits.0.0));

@@ -9,7 +9,7 @@ use super::options::RenderOptions;
 use super::render::Counts;
 use super::scalar::Samples;
 use crate::error::{InputError, Result};
-use crate::estimator::{AnyEstimator, Probe, camera_ray, seen_besides};
+use crate::estimator::{AnyEstimator, Probe, camera_ray, extra_camera_rays};
 use crate::math::{Precision, Rgb};
 use crate::sampling::{SAMPLERS, SampleKey, Sampler, keyed_sampler};
 use crate::scene::{AllEffects, Scene, View};
@@ -79,7 +79,7 @@ impl Inspector {
         if self.camera_rays == 1 {
             return radiance;
         }
-        radiance + seen_besides(&self.scene, &self.view, [x, y], key, self.camera_rays, &*self.sampler, probe)
+        radiance + extra_camera_rays(&self.scene, &self.view, [x, y], key, self.camera_rays, &*self.sampler, probe)
     }
 }
 

@@ -80,6 +80,7 @@ impl Bounds {
 /// Returns the largest distance outside a box at which a ray still counts as hitting it, in units of the sum of the
 /// largest coordinates of the box and of the ray's origin. Numbers have `digits` binary digits. The padding covers the
 /// rounding errors of the box test and of the tests of its primitives: at most some 30 ulps.
+#[inline]
 pub const fn padding(digits: u32) -> f64 {
     64.0 / (1_u64 << digits) as f64
 }

@@ -7,7 +7,7 @@ use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
 /// The lower lanes and the upper ones.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Two<V>(pub(super) V, pub(super) V);
+pub(super) struct Pair<V>(pub(super) V, pub(super) V);
 
 /// Operations on the lower lanes, then on the upper ones.
 macro_rules! forward {
@@ -24,7 +24,7 @@ macro_rules! compare {
     ($($method:ident)*) => {$(
         #[inline(always)]
         fn $method(self, other: Self) -> Self::Mask {
-            Two(self.0.$method(other.0), self.1.$method(other.1))
+            Pair(self.0.$method(other.0), self.1.$method(other.1))
         }
     )*};
 }
@@ -33,7 +33,7 @@ macro_rules! operators {
     ($($Trait:ident $method:ident($($other:ident)?);)*) => {$(
         // `Copy` types need no drop code: without `Copy` the compiler had to remove ten times as many branches from
         // each operation.
-        impl<V: $Trait<Output = V> + Copy> $Trait for Two<V> {
+        impl<V: $Trait<Output = V> + Copy> $Trait for Pair<V> {
             type Output = Self;
             forward! { $method($($other)?); }
         }
@@ -52,8 +52,8 @@ operators! {
     Not not();
 }
 
-impl<V: Real> Real for Two<V> {
-    type Mask = Two<V::Mask>;
+impl<V: Real> Real for Pair<V> {
+    type Mask = Pair<V::Mask>;
     const SIGNIFICAND: u32 = V::SIGNIFICAND;
     const SMALLEST: f64 = V::SMALLEST;
 
@@ -74,7 +74,7 @@ impl<V: Real> Real for Two<V> {
     }
 }
 
-impl<B: Bits> Bits for Two<B> {
+impl<B: Bits> Bits for Pair<B> {
     forward! {
         plus(other);
         times(other);
@@ -97,7 +97,7 @@ impl<B: Bits> Bits for Two<B> {
 }
 
 /// Masks of two vectors; the lower vector has the lower bits.
-impl<M: HalfMask> Mask for Two<M> {
+impl<M: HalfMask> Mask for Pair<M> {
     #[inline(always)]
     fn from_bits(bits: u32) -> Self {
         Self(M::from_bits(bits), M::from_bits(bits >> M::LANES))
@@ -117,11 +117,11 @@ pub(super) trait HalfMask: Mask {
 pub(super) trait PairMask: Mask {
     /// The mask of one register.
     type Half: HalfMask;
-    fn halves(self) -> Two<Self::Half>;
-    fn of_halves(halves: Two<Self::Half>) -> Self;
+    fn halves(self) -> Pair<Self::Half>;
+    fn of_halves(halves: Pair<Self::Half>) -> Self;
 }
 
-impl<M: HalfMask> PairMask for Two<M> {
+impl<M: HalfMask> PairMask for Pair<M> {
     type Half = M;
     #[inline(always)]
     fn halves(self) -> Self {
@@ -133,7 +133,7 @@ impl<M: HalfMask> PairMask for Two<M> {
     }
 }
 
-impl<M: PairMask, B: Words<M::Half>> Words<M> for Two<B> {
+impl<M: PairMask, B: Words<M::Half>> Words<M> for Pair<B> {
     #[inline(always)]
     fn load(from: &[u64]) -> Self {
         let (lower, upper) = from.split_at(M::Half::LANES as usize);
@@ -147,7 +147,7 @@ impl<M: PairMask, B: Words<M::Half>> Words<M> for Two<B> {
     }
     #[inline(always)]
     fn fill(self, mask: M, from: &[u64]) -> Self {
-        let Two(lower, upper) = mask.halves();
+        let Pair(lower, upper) = mask.halves();
         let rest = &from[lower.bits().count_ones() as usize..];
         Self(self.0.fill(lower, from), self.1.fill(upper, rest))
     }
@@ -163,21 +163,21 @@ impl<M: PairMask, B: Words<M::Half>> Words<M> for Two<B> {
     }
     #[inline(always)]
     fn choose(mask: M, yes: Self, no: Self) -> Self {
-        let Two(lower, upper) = mask.halves();
+        let Pair(lower, upper) = mask.halves();
         Self(B::choose(lower, yes.0, no.0), B::choose(upper, yes.1, no.1))
     }
     #[inline(always)]
     fn less(self, other: Self) -> M {
-        M::of_halves(Two(self.0.less(other.0), self.1.less(other.1)))
+        M::of_halves(Pair(self.0.less(other.0), self.1.less(other.1)))
     }
     #[inline(always)]
     fn equal(self, other: Self) -> M {
-        M::of_halves(Two(self.0.equal(other.0), self.1.equal(other.1)))
+        M::of_halves(Pair(self.0.equal(other.0), self.1.equal(other.1)))
     }
 }
 
-impl<V: Float<Mask: HalfMask>> Float for Two<V> {
-    type Bits = Two<V::Bits>;
+impl<V: Float<Mask: HalfMask>> Float for Pair<V> {
+    type Bits = Pair<V::Bits>;
     type One = V::One;
     type Single = V::Single;
     type Register = V;
