@@ -267,7 +267,8 @@ impl Lab {
 mod tests {
     use super::*;
     use crate::kernel::workload::Mandelbrot;
-    use crate::scene::SCENES;
+    use crate::kernel::{Planned, SCALAR, Spec, choose_among};
+    use crate::scene::{SCENES, load};
 
     fn said(lab: &Lab) -> String {
         lab.check().err().map(|error| error.to_string()).unwrap_or_default()
@@ -280,6 +281,8 @@ mod tests {
         assert!(error.starts_with("workload = cornell: ") && error.contains("pathmark itself"), "{error}");
         let error = said(&Lab::new().scene("mine", "").workload("mine", Mandelbrot));
         assert_eq!(error.matches(file!()).count(), 2, "{error}");
+        let error = said(&Lab::new().kernel(SCALAR));
+        assert!(error.starts_with("kernel = scalar: "), "{error}");
         let error = said(&Lab::new().strategy(STRATEGIES[0]));
         assert!(error.starts_with(&format!("strategy = {}: ", STRATEGIES[0].name)), "{error}");
     }
@@ -300,6 +303,25 @@ mod tests {
         let lab = Lab::new();
         for entry in lab.workloads() {
             assert!(!SCENES.iter().any(|(name, _)| *name == entry.name), "{}", entry.name);
+        }
+    }
+
+    /// A kernel without code for a scene gives way to the scalar one, and the row says why. Errors name all kernels.
+    #[test]
+    fn custom_kernels_are_chosen_by_name() {
+        let picky = KernelEntry::new("picky", "renders nothing", |_| Ok(Planned::Unsupported("everything")));
+        let lab = Lab::new().kernel(picky);
+        let scene = load("cornell").unwrap();
+        let chosen = |kernel: &str| {
+            let spec = Spec { kernel: kernel.into(), ..Spec::default() };
+            choose_among(&scene, &spec, lab.kernel_tables()).map_err(|error| error.to_string())
+        };
+        let choice = chosen("picky").unwrap();
+        assert_eq!((choice.kernel(), choice.fallback()), ("scalar", "everything"));
+        assert_eq!(chosen("scalar").unwrap().fallback(), "");
+        for unknown in ["pick", "picky:1"] {
+            let error = chosen(unknown).err().unwrap();
+            assert!(error.contains("lanes, scalar, ") && error.contains(", picky"), "{error}");
         }
     }
 }

@@ -59,6 +59,7 @@ impl SpheresF32 {
     }
 
     /// The spheres by curvature with their numbers, and how many of them, from the first on, no path leaves.
+    #[cfg(feature = "device")]
     pub(crate) fn in_order(&self) -> (usize, Vec<(u32, SphereByCurvature<f32>)>) {
         let all = self.enclosing.iter().chain(&self.curved).map(|(number, curved)| (*number as u32, *curved));
         (self.enclosing.len(), all.collect())

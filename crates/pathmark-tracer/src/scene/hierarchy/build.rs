@@ -12,7 +12,7 @@ use std::panic::resume_unwind;
 use std::sync::{Mutex, PoisonError};
 use std::thread::{Builder, available_parallelism, scope};
 
-/// The deepest level: halving 2^32 primitives after [`UNBALANCED`] levels.
+/// The deepest level: halving 2^32 primitives after `UNBALANCED` levels.
 pub const DEEPEST: usize = UNBALANCED + 32;
 
 /// The most primitives of a node that are sorted, with every place between two of them tried. For a million triangles,
