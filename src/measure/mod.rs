@@ -37,7 +37,6 @@ mod setup;
 mod share;
 mod trace;
 mod trace_file;
-mod tree_folder;
 mod usage;
 mod warning;
 
@@ -69,5 +68,4 @@ pub use setup::Setup;
 pub use share::{DoneJob, Gathered, Share};
 pub use trace::{JobSpan, Trace};
 pub use trace_file::{TraceFile, TraceHeader, TraceRow};
-pub use tree_folder::check_cache;
 pub use warning::{WARNINGS, Warning, WarningEntry};

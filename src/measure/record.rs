@@ -98,7 +98,7 @@ columns! {
         pub jobs: usize,
         /// Workers that did at least one job; empty, like all measurements, if the run failed.
         pub workers_used: Option<u32>,
-        /// Seconds to build the kernel and the scene's acceleration structure; empty if `--cache` may have supplied the structure.
+        /// Seconds to build the kernel and the scene's acceleration structure.
         pub build_s: Option<f64>,
         /// Seconds of `build_s` to compile programs for devices; empty without devices.
         pub device_compile_s: Option<f64>,
@@ -362,8 +362,7 @@ impl Record {
             let all = counts.rays * scene.owners.len() as u64;
             record.primitive_tests = Some(if choice.is_hierarchical() { counts.primitive_tests } else { all });
         }
-        let is_built = setup.scene().is_none_or(|(scene, choice)| !choice.asks_store(scene));
-        record.build_s = is_built.then_some(outcome.build_s);
+        record.build_s = Some(outcome.build_s);
         record.device_compile_s = outcome.device.map(|device| device.compile_s);
         record.device_copy_s = outcome.device.map(|device| device.copy_s);
         record.jobs = durations.len();

@@ -3,7 +3,6 @@
 use super::cut::cut;
 use super::output::{self, Delivery, OUTPUTS, Output};
 use super::settings::check_spp;
-use super::tree_folder::TreeFolder;
 use super::{Settings, Warning, available_threads, pilot};
 use crate::digest;
 use crate::error::{Error, InputError, Result};
@@ -367,9 +366,7 @@ impl Subject {
     }
 }
 
-/// The choice of a scene's kernel, with hierarchies from the folder in the settings.
+/// The choice of a scene's kernel.
 fn chosen(scene: &Scene, settings: &Settings, tables: Tables<'_>) -> Result<Box<RenderOptions>> {
-    let choice = kernel::choose_among(scene, &settings.spec, tables)?;
-    let Some(folder) = &settings.cache else { return Ok(Box::new(choice)) };
-    Ok(Box::new(choice.with_trees(Arc::new(TreeFolder::new(folder)?))))
+    kernel::choose_among(scene, &settings.spec, tables).map(Box::new)
 }

@@ -90,7 +90,7 @@ impl KernelPlan for HybridPlan {
     }
 
     fn build(&self, scene: &Arc<Scene>, options: &RenderOptions) -> Result<Box<dyn Kernel>> {
-        let prepared = options.prepared(scene)?;
+        let prepared = options.prepared(scene);
         let devices = self.devices.iter().map(|device| OnDevice::new(&prepared, options, device));
         let devices = devices.collect::<Result<_>>()?;
         Ok(Box::new(Hybrid { processor: self.processor.build(scene, options)?, devices }))

@@ -7,7 +7,6 @@ use super::tables::Tables;
 use super::targets::Targets;
 use crate::sampler::InLanes as Sampler;
 use crate::simd::Level;
-use pathmark_tracer::error::Result;
 use pathmark_tracer::estimator::PathRules;
 use pathmark_tracer::kernel::RenderOptions;
 use pathmark_tracer::math::Precision;
@@ -56,10 +55,10 @@ impl Lanes {
         scene: &Arc<Scene>,
         options: &RenderOptions,
         InLanes { level, precision, rules, sampler, is_diffuse_only }: InLanes,
-    ) -> Result<Self> {
+    ) -> Self {
         let view = options.view(scene);
         let is_round = scene.is_round();
-        let hierarchy = options.hierarchy(scene)?.or_else(|| scene.hierarchy.clone());
+        let hierarchy = options.hierarchy(scene).or_else(|| scene.hierarchy.clone());
         let search = match precision {
             _ if !is_round || hierarchy.is_some() => {
                 Search::Wide(Box::new(Wide::of(scene, hierarchy, level, precision, &scene.enclosing(&view))))
@@ -68,7 +67,7 @@ impl Lanes {
             Precision::F32 => Search::SpheresF32(SpheresF32::of(scene, &scene.enclosing(&view))),
         };
         let lights = options.estimator().aims.then(|| scene.lights_for(&view));
-        Ok(Self {
+        Self {
             targets: lights.as_ref().and_then(|lights| Targets::of(lights, precision)).map(Box::new),
             tables: Tables::of(scene, precision),
             search,
@@ -81,7 +80,7 @@ impl Lanes {
             sampler,
             level,
             is_diffuse_only,
-        })
+        }
     }
 
     /// Stacks for searches, if there is a tree.

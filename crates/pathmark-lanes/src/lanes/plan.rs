@@ -78,10 +78,10 @@ impl KernelPlan for InLanes {
     }
 
     fn build(&self, scene: &Arc<Scene>, options: &RenderOptions) -> Result<Box<dyn Kernel>> {
-        Ok(Box::new(Lanes::new(scene, options, *self)?))
+        Ok(Box::new(Lanes::new(scene, options, *self)))
     }
 
     fn first_hits(&self, scene: &Arc<Scene>, options: &RenderOptions, rays: Vec<Start>) -> Result<Box<dyn FirstHits>> {
-        Ok(Box::new(SearchOfLanes::new(Lanes::new(scene, options, *self)?, &rays)))
+        Ok(Box::new(SearchOfLanes::new(Lanes::new(scene, options, *self), &rays)))
     }
 }

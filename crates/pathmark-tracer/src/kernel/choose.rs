@@ -113,7 +113,6 @@ pub fn choose(scene: &Scene, spec: &Spec, tables: Tables<'_>) -> Result<RenderOp
         options,
         sampler,
         accelerator,
-        trees: None,
         plan,
         fallback,
         factor,

@@ -9,7 +9,7 @@ use crate::error::{InputError, Result};
 use crate::estimator::{AnyEstimator, ESTIMATORS, Entry as EstimatorEntry, Options, Roulette, any_estimator};
 use crate::math::Precision;
 use crate::sampling::Entry as SamplerEntry;
-use crate::scene::{Accelerator, Filter, Hierarchy, ProfileEntry, SUBPIXELS, Scan, Scene, TreeStore, View};
+use crate::scene::{Accelerator, Filter, Hierarchy, ProfileEntry, SUBPIXELS, Scan, Scene, View};
 use std::sync::Arc;
 
 /// A kernel that has been chosen for a scene, before it is built.
@@ -86,8 +86,6 @@ pub struct RenderOptions {
     pub(super) sampler: &'static SamplerEntry,
     pub(super) profile: &'static ProfileEntry,
     pub(super) accelerator: &'static Accelerator,
-    /// Store in which hierarchies are looked up and kept.
-    pub(super) trees: Option<Arc<dyn TreeStore>>,
     pub(super) plan: Arc<dyn KernelPlan>,
     /// Reason why the scalar kernel replaces the requested one; empty if it does not.
     pub(super) fallback: &'static str,
@@ -127,21 +125,9 @@ impl RenderOptions {
         Self { seed, clamp: None, ..self }
     }
 
-    /// The same options with a store of hierarchies, which keeps those that it lacks.
-    #[must_use]
-    pub fn with_trees(self, store: Arc<dyn TreeStore>) -> Self {
-        Self { trees: Some(store), ..self }
-    }
-
-    /// Whether the scene's hierarchy is looked up in the store.
-    pub fn asks_store(&self, scene: &Scene) -> bool {
-        let with_box = scene.primitives.spheres.len() + scene.primitives.triangles.len();
-        self.trees.is_some() && self.accelerator.is_kept(with_box)
-    }
-
     /// The scene's hierarchy; `None` if the accelerator has none.
-    pub fn hierarchy(&self, scene: &Scene) -> Result<Option<Hierarchy>> {
-        scene.hierarchy_by(self.accelerator(), self.trees.as_deref())
+    pub fn hierarchy(&self, scene: &Scene) -> Option<Hierarchy> {
+        scene.hierarchy_by(self.accelerator())
     }
 
     /// The clamp, if any.
@@ -257,9 +243,9 @@ impl RenderOptions {
     }
 
     /// The scene with the hierarchy, the lights and the epsilon that the options require.
-    pub fn prepared(&self, scene: &Arc<Scene>) -> Result<Arc<Scene>> {
+    pub fn prepared(&self, scene: &Arc<Scene>) -> Arc<Scene> {
         let mut prepared = Arc::clone(scene);
-        let hierarchy = self.hierarchy(scene)?;
+        let hierarchy = self.hierarchy(scene);
         if hierarchy.is_some() {
             Arc::make_mut(&mut prepared).hierarchy = hierarchy;
         }
@@ -269,7 +255,7 @@ impl RenderOptions {
         if self.epsilon.is_some() {
             Arc::make_mut(&mut prepared).epsilon = self.epsilon;
         }
-        Ok(prepared)
+        prepared
     }
 
     /// The scene in the lengths of the computation, and their factor.

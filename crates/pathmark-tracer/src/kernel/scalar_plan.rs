@@ -55,14 +55,14 @@ impl KernelPlan for ScalarPlan {
             let unknown = || unknown("sampler", name, SAMPLERS.iter().map(|entry| entry.name));
             return Ok(boxed(Inspector::with(scene, options, sampler.ok_or_else(unknown)?)?, options));
         }
-        let scene = options.prepared(scene)?;
+        let scene = options.prepared(scene);
         let kernel = with_profile(options.profile.name, ByProfile { scene, options }).flatten();
         let unknown = || unknown("estimator", options.estimator.name, ESTIMATORS.iter().map(|entry| entry.name));
         Ok(kernel.ok_or_else(unknown)?)
     }
 
     fn first_hits(&self, scene: &Arc<Scene>, options: &RenderOptions, rays: Vec<Start>) -> Result<Box<dyn FirstHits>> {
-        Ok(Box::new(ScalarSearch::new(options.prepared(scene)?, rays)))
+        Ok(Box::new(ScalarSearch::new(options.prepared(scene), rays)))
     }
 }
 

@@ -25,8 +25,8 @@ pub use feature::{
 pub use fog::Fog;
 pub use generator::GENERATORS;
 pub use hierarchy::{
-    ACCELERATORS, Bounds, DEEPEST, Entry as Accelerator, Faces, Hierarchy, Node, Scan, Slabs, Tests, TreeStore,
-    accelerator, padding,
+    ACCELERATORS, Bounds, DEEPEST, Entry as Accelerator, Faces, Hierarchy, Node, Scan, Slabs, Tests, accelerator,
+    padding,
 };
 pub use library::{Library, load};
 pub use light::{Aim, Lights, one_minus_cos};
@@ -40,7 +40,6 @@ pub use shape::{Nearest, PRIMITIVES, Plane, Primitive, Primitives, SHAPES, Spher
 pub use source::{CustomScene, SCENES};
 
 use crate::effect::{EffectSet, Effects};
-use crate::error::Result;
 use crate::material::Material;
 use crate::math::{Frame, Ray, Rgb, Vec3, dot};
 use std::path::PathBuf;
@@ -339,15 +338,12 @@ impl Scene {
 
     /// Returns the scene with the accelerator of that name; `None` if that builds no hierarchy.
     pub fn accelerated(&self, name: &str) -> Option<Self> {
-        // Without a store nothing can fail.
-        let hierarchy = self.hierarchy_by(name, None).ok()??;
+        let hierarchy = self.hierarchy_by(name)?;
         Some(Self { hierarchy: Some(hierarchy), ..self.clone() })
     }
 
-    /// Returns the hierarchy of that accelerator over its primitives, from the store if it holds it; `None` if the
-    /// accelerator builds none.
-    pub fn hierarchy_by(&self, name: &str, store: Option<&dyn TreeStore>) -> Result<Option<Hierarchy>> {
-        let accelerator = accelerator(Some(name), 0, Scan::OneByOne);
-        accelerator.map_or(Ok(None), |accelerator| accelerator.build(self.primitives.bounds(), store))
+    /// Returns the hierarchy of that accelerator over its primitives; `None` if the accelerator builds none.
+    pub fn hierarchy_by(&self, name: &str) -> Option<Hierarchy> {
+        accelerator(Some(name), 0, Scan::OneByOne)?.build(self.primitives.bounds())
     }
 }

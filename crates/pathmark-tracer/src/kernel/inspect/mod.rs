@@ -53,7 +53,7 @@ impl Inspector {
     /// An inspector with a given sampler.
     pub(super) fn with(scene: &Arc<Scene>, options: &RenderOptions, sampler: Box<dyn Sampler>) -> Result<Self> {
         Ok(Self {
-            scene: options.prepared(scene)?,
+            scene: options.prepared(scene),
             view: options.view(scene),
             width: options.width,
             seed: options.seed,

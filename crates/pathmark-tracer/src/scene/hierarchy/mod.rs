@@ -10,18 +10,13 @@
 
 mod bounds;
 mod build;
-mod kept;
 mod median;
 mod sah;
 mod sorted;
 mod traverse;
-mod tree_file;
 
 pub use bounds::{Bounds, Faces, Slabs, padding};
 pub use build::DEEPEST;
-pub use kept::TreeStore;
-
-use crate::error::Result;
 
 /// Boxes and primitives that rays were tested against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -133,26 +128,13 @@ impl Entry {
         self.build.is_some()
     }
 
-    /// Whether a store is asked for a hierarchy over that many primitives.
-    pub fn is_kept(&self, primitives: usize) -> bool {
-        self.is_hierarchy() && primitives >= kept::WORTH_KEEPING
-    }
-
-    /// Builds the hierarchy over primitives with these boxes, or takes it from the store; `None` if there is nothing to
-    /// build.
-    pub fn build(
-        &self,
-        bounds: impl Iterator<Item = Option<Bounds>>,
-        store: Option<&dyn TreeStore>,
-    ) -> Result<Option<Hierarchy>> {
-        let Some(build) = self.build else { return Ok(None) };
+    /// Builds the hierarchy over primitives with these boxes; `None` if there is nothing to build.
+    pub fn build(&self, bounds: impl Iterator<Item = Option<Bounds>>) -> Option<Hierarchy> {
+        let build = self.build?;
         let mut items = Vec::with_capacity(bounds.size_hint().1.unwrap_or_default());
         let with_box = (0..).zip(bounds).filter_map(|(number, bounds)| Some(Item { bounds: bounds?.padded(), number }));
         items.extend(with_box);
-        match store {
-            Some(store) => kept::found_or_built(self.name, items, store, build),
-            None => Ok(build(items)),
-        }
+        build(items)
     }
 }
 
