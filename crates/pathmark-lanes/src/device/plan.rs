@@ -112,6 +112,6 @@ impl KernelPlan for ForDevice {
     }
 
     fn build(&self, scene: &Arc<Scene>, options: &RenderOptions) -> Result<Box<dyn Kernel>> {
-        Ok(Box::new(OnDevice::new(&*options.prepared(scene), options, self)?))
+        Ok(Box::new(OnDevice::new(&options.prepared(scene), options, self)?))
     }
 }

@@ -47,7 +47,7 @@ fn choose_kernel(request: &Request<'_>, kernels: &[KernelEntry]) -> Result<Kerne
 fn profiles_for(estimator: &EstimatorEntry, sampler: &SamplerEntry) -> &'static [&'static str] {
     match estimator.compiled {
         Compiled::EveryProfile if sampler.name == INDEPENDENT => &[],
-        Compiled::Common if sampler.name == INDEPENDENT => &[SmallptEffects::NAME, AllEffects::NAME],
+        Compiled::EveryProfile | Compiled::Common if sampler.deterministic => &[SmallptEffects::NAME, AllEffects::NAME],
         _ => &[AllEffects::NAME],
     }
 }

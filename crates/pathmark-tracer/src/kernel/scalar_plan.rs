@@ -1,9 +1,9 @@
 //! The entry of the scalar kernel, and the choice of its compiled code.
 //!
 //! With the sampler `independent` the whole path is compiled as one function for each estimator and several effect
-//! profiles. With other samplers the estimator and the sampler are called through pointers, with every effect: each
-//! copy of the path takes a second to compile, and pointers cost these renders at most a fifth of their time
-//! (docs/tried.md).
+//! profiles. Other samplers are called through pointers: in scenes of smallpt's effects by compiled estimators, in other
+//! scenes by estimators that are pointers, too. Each copy of the path takes a second to compile, and pointers cost these
+//! renders up to a fifth of their time (docs/tried.md).
 
 use super::clamp::{Clamp, Clamped};
 use super::entry::{KernelEntry, Planned, Request};
@@ -15,9 +15,9 @@ use super::render::Kernel;
 use super::scalar::{Compiled, Samples, Scalar};
 use crate::effect::EffectSet;
 use crate::error::{InputError, Result};
-use crate::estimator::{Compiled as CompiledFor, ESTIMATORS, Estimator, EstimatorVisitor, with_estimator};
+use crate::estimator::{Compiled as CompiledFor, Estimator, EstimatorVisitor, with_estimator};
 use crate::math::Precision;
-use crate::sampling::{Independent, SAMPLERS, keyed_sampler, stateful_sampler};
+use crate::sampling::{Independent, SAMPLERS, Sampler, keyed_sampler, stateful_sampler};
 use crate::scene::{AllEffects, ProfileVisitor, Scene, SmallptEffects, with_profile};
 use std::marker::PhantomData;
 use std::sync::Arc;
@@ -49,16 +49,21 @@ impl KernelPlan for ScalarPlan {
         if let Some(Clamp { what: Clamped::Recursion, limit }) = options.clamp {
             return Ok(boxed(RecursionClamp { inspector: Inspector::new(scene, options)?, limit }, options));
         }
-        let name = options.sampler.name;
-        if options.custom.is_some() || name != INDEPENDENT {
-            let sampler = keyed_sampler(name).or_else(|| stateful_sampler(name, options.seed));
-            let unknown = || unknown("sampler", name, SAMPLERS.iter().map(|entry| entry.name));
-            return Ok(boxed(Inspector::with(scene, options, sampler.ok_or_else(unknown)?)?, options));
+        let (name, scene) = (options.sampler.name, options.prepared(scene));
+        let compiled = match options.profile.name {
+            _ if options.custom.is_some() => None,
+            profile if name == INDEPENDENT => with_profile(profile, ByProfile { scene: &scene, options }).flatten(),
+            SmallptEffects::NAME => {
+                keyed_sampler(name).and_then(|sampler| by_estimator::<_, SmallptEffects>(&scene, options, sampler))
+            }
+            _ => None,
+        };
+        if let Some(kernel) = compiled {
+            return Ok(kernel);
         }
-        let scene = options.prepared(scene);
-        let kernel = with_profile(options.profile.name, ByProfile { scene, options }).flatten();
-        let unknown = || unknown("estimator", options.estimator.name, ESTIMATORS.iter().map(|entry| entry.name));
-        Ok(kernel.ok_or_else(unknown)?)
+        let sampler = keyed_sampler(name).or_else(|| stateful_sampler(name, options.seed));
+        let unknown = || unknown("sampler", name, SAMPLERS.iter().map(|entry| entry.name));
+        Ok(boxed(Inspector::with(scene, options, sampler.ok_or_else(unknown)?)?, options))
     }
 
     fn first_hits(&self, scene: &Arc<Scene>, options: &RenderOptions, rays: Vec<Start>) -> Result<Box<dyn FirstHits>> {
@@ -72,17 +77,25 @@ fn boxed(samples: impl Samples + 'static, options: &RenderOptions) -> Box<dyn Ke
 
 /// Maps the profile's name to a type, then the estimator's.
 struct ByProfile<'a> {
-    scene: Arc<Scene>,
+    scene: &'a Arc<Scene>,
     options: &'a RenderOptions,
 }
 
 impl ProfileVisitor for ByProfile<'_> {
     type Output = Option<Box<dyn Kernel>>;
     fn visit<X: EffectSet>(self) -> Self::Output {
-        let Self { scene, options } = self;
-        let by_estimator = ByEstimator::<X> { scene, options, profile: PhantomData };
-        with_estimator(options.estimator.name, options.options, by_estimator)
+        by_estimator::<_, X>(self.scene, self.options, Independent)
     }
+}
+
+/// The kernel that is compiled for the profile and the sampler; `None` if the estimator is not compiled for the profile.
+fn by_estimator<S: Sampler + 'static, X: EffectSet>(
+    scene: &Arc<Scene>,
+    options: &RenderOptions,
+    sampler: S,
+) -> Option<Box<dyn Kernel>> {
+    let visitor = ByEstimator::<S, X> { scene: Arc::clone(scene), options, sampler, profile: PhantomData };
+    with_estimator(options.estimator.name, options.options, visitor).flatten()
 }
 
 /// Whether scalar kernels of the estimator are compiled for the profile.
@@ -95,22 +108,22 @@ const fn is_compiled<E: Estimator, X: EffectSet>() -> bool {
 }
 
 /// Maps the estimator's name to a type, then to a kernel.
-struct ByEstimator<'a, X> {
+struct ByEstimator<'a, S, X> {
     scene: Arc<Scene>,
     options: &'a RenderOptions,
+    sampler: S,
     profile: PhantomData<X>,
 }
 
-impl<X: EffectSet> EstimatorVisitor for ByEstimator<'_, X> {
-    type Output = Box<dyn Kernel>;
+impl<S: Sampler + 'static, X: EffectSet> EstimatorVisitor for ByEstimator<'_, S, X> {
+    type Output = Option<Box<dyn Kernel>>;
     fn visit<E: Estimator + 'static>(self, estimator: E) -> Self::Output {
-        let Self { scene, options, .. } = self;
-        // The condition is a constant, so a profile that is not compiled for takes no compile time. `choose` never asks
-        // for one.
+        let Self { scene, options, sampler, .. } = self;
+        // The condition is a constant, so a profile that is not compiled for takes no compile time.
         if const { is_compiled::<E, X>() } {
-            boxed(Compiled::<E, _, X>::new(scene, options, estimator, Independent), options)
+            Some(boxed(Compiled::<E, S, X>::new(scene, options, estimator, sampler), options))
         } else {
-            boxed(Compiled::<E, _, AllEffects>::new(scene, options, estimator, Independent), options)
+            None
         }
     }
 }

@@ -47,14 +47,14 @@ impl Inspector {
                 SAMPLERS.iter().filter(|entry| entry.deterministic).map(|entry| entry.name).collect();
             return Err(InputError::new("sampler", options.sampler.name, problem).allowed(names.join(", ")).into());
         };
-        Self::with(scene, options, sampler)
+        Self::with(options.prepared(scene), options, sampler)
     }
 
-    /// An inspector with a given sampler.
-    pub(super) fn with(scene: &Arc<Scene>, options: &RenderOptions, sampler: Box<dyn Sampler>) -> Result<Self> {
+    /// An inspector of a prepared scene, with a given sampler.
+    pub(super) fn with(scene: Arc<Scene>, options: &RenderOptions, sampler: Box<dyn Sampler>) -> Result<Self> {
         Ok(Self {
-            scene: options.prepared(scene),
-            view: options.view(scene),
+            view: options.view(&scene),
+            scene,
             width: options.width,
             seed: options.seed,
             camera_rays: options.options.camera_rays(),
