@@ -4,7 +4,7 @@
 mod bench;
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput};
-use pathmark::math::{Curved, Ray, Vec3, curved_quadratic, dot, first_root, first_root_curved};
+use pathmark::math::{Ray, SphereByCurvature, Vec3, curved_quadratic, dot, first_root, first_root_curved};
 use pathmark::scene::{ACCELERATORS, AllEffects, Bounds, Plane, Primitive, Sphere, Tests, Triangle, load};
 use pathmark::simd::{Float, Precision, Work, levels, on_level};
 use rand_pcg::Pcg64Mcg;
@@ -80,8 +80,9 @@ impl Work for InEachLane<'_> {
             for sphere in 0..self.spheres {
                 let radius = 0.5 + 0.01 * f64::from(sphere);
                 let root = if self.is_curved {
-                    let Curved { normal, curvature, offset } = Curved::of(Vec3::new(0.1, 0.2, 0.3), radius);
-                    let sphere = Curved {
+                    let SphereByCurvature { normal, curvature, offset } =
+                        SphereByCurvature::of(Vec3::new(0.1, 0.2, 0.3), radius);
+                    let sphere = SphereByCurvature {
                         normal: Vec3::splat(normal),
                         curvature: V::splat(curvature),
                         offset: V::splat(offset),

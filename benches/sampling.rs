@@ -4,7 +4,8 @@ mod bench;
 
 use criterion::{BenchmarkId, Criterion, Throughput};
 use pathmark::math::Bits;
-use pathmark::sampling::{Address, InLanes, PathWords, Purpose, SAMPLERS, SampleKey, Sampler, keyed_sampler};
+use pathmark::sampler::{InLanes, PathWords};
+use pathmark::sampling::{Address, Purpose, SAMPLERS, SampleKey, Sampler, keyed_sampler};
 use pathmark::simd::{Float, Precision, Work, levels, on_level};
 use std::hint::black_box;
 use std::time::Duration;

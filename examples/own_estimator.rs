@@ -8,7 +8,7 @@ use pathmark::effect::EffectSet;
 use pathmark::estimator::{Estimator, Probe};
 use pathmark::math::{Ray, Rgb};
 use pathmark::sampling::{Address, Purpose, SampleKey, Sampler, cosine_hemisphere};
-use pathmark::scene::{Scene, Standpoint, Tests};
+use pathmark::scene::{Scene, SurfaceOrigin, Tests};
 use std::process::ExitCode;
 
 /// Objects further away than this do not darken a point.
@@ -35,7 +35,7 @@ impl Estimator for Occlusion {
         // Random numbers depend only on their address, so the image is the same under every schedule.
         let pair = sampler.pair(Address { key, bounce: 1, branch: 0, purpose: Purpose::Bsdf });
         let direction = hit.frame().to_world(cosine_hemisphere(pair));
-        let from = Standpoint { primitive: hit.primitive, inside: hit.inside };
+        let from = SurfaceOrigin { primitive: hit.primitive, inside: hit.inside };
         let mut tests = Tests::default();
         let above = Ray { origin: hit.point, direction };
         let is_dark = scene.is_blocked::<X>(&above, Some(from), REACH, &mut tests);

@@ -24,8 +24,8 @@
 //!
 //! # Where to start
 //!
-//! * To add your own pool, estimator, workload, scene or experiment: [`Lab`]. The package's `examples/own_*.rs` are
-//!   such programs.
+//! * To add your own pool, kernel, estimator, workload, scene or experiment: [`Lab`]. The package's `examples/own_*.rs`
+//!   and `examples/custom_kernel.rs` are such programs.
 //! * To test your own pool: [`strategy`], a crate without the renderer, and its contract.
 //! * To render from a program, as above: [`measure::Setup`]; [`image_io`] writes the picture, [`metric`] compares two.
 //! * To analyse measurements: [`analysis`], and [`simulate`] for workers that the machine does not have.
@@ -66,7 +66,7 @@ pub use pathmark_harness::{
     metric, sampling, scene, simulate, strategy,
 };
 #[doc(hidden)]
-pub use pathmark_harness::{atomic_file, cluster, disk, file_id, files, lock, shell, simd};
+pub use pathmark_harness::{atomic_file, cluster, disk, file_id, files, lock, sampler, shell, simd};
 
 #[cfg(feature = "program")]
 #[doc(inline)]

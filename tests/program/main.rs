@@ -1,7 +1,6 @@
 //! The program `pathmark` as a user runs it: one test program for all verbs.
 
 mod again;
-mod cache;
 mod changed_inputs;
 mod claims;
 mod command_line;

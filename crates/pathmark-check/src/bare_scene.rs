@@ -1,7 +1,7 @@
 //! Scenes of bare primitives, searched with every accelerator.
 
 use crate::math::Ray;
-use crate::scene::{ACCELERATORS, Hit, Primitives, Scene, Sphere, Standpoint, load};
+use crate::scene::{ACCELERATORS, Hit, Primitives, Scene, Sphere, SurfaceOrigin, load};
 
 /// A scene of these primitives, all of one object. Its camera is irrelevant.
 pub fn scene_of(primitives: Primitives) -> Scene {
@@ -22,6 +22,6 @@ pub fn searches(scene: &Scene) -> impl Iterator<Item = (&'static str, Scene)> + 
 }
 
 /// The first hit of the ray.
-pub fn intersect(scene: &Scene, ray: &Ray, from: Option<Standpoint>) -> Option<Hit> {
+pub fn intersect(scene: &Scene, ray: &Ray, from: Option<SurfaceOrigin>) -> Option<Hit> {
     scene.first_of_any(ray, from)
 }

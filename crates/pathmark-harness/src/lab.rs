@@ -6,9 +6,9 @@ mod rank_rule;
 
 use crate::error::{InputError, Result};
 use crate::estimator::{ESTIMATORS, Entry as EstimatorEntry, Estimator};
-use crate::kernel::OwnEstimator;
 use crate::kernel::workload::{self, WORKLOADS, Workload};
-use crate::scene::{Library, OwnScene, Scene};
+use crate::kernel::{CustomEstimator, KernelEntry, TABLES, Tables};
+use crate::scene::{CustomScene, Library, Scene};
 use crate::shell;
 use crate::strategy::{Entry as Strategy, STRATEGIES, StrategyError};
 pub use rank_rule::{Distribution, LOOK, Master, RankRule, is_small};
@@ -27,7 +27,8 @@ pub struct Lab {
     name: Option<&'static str>,
     version: Option<&'static str>,
     strategies: Vec<Strategy>,
-    estimators: Vec<OwnEstimator>,
+    kernels: Vec<KernelEntry>,
+    estimators: Vec<CustomEstimator>,
     workloads: Vec<workload::Entry>,
     scenes: Library,
     experiments: Vec<(String, String)>,
@@ -58,6 +59,7 @@ impl Lab {
             name: None,
             version: None,
             strategies: STRATEGIES.to_vec(),
+            kernels: TABLES.kernels.to_vec(),
             estimators: Vec::new(),
             workloads: WORKLOADS.to_vec(),
             scenes: Library::default(),
@@ -105,13 +107,23 @@ impl Lab {
         self
     }
 
+    /// Adds a kernel, whose plan says for each scene whether it can render it.
+    #[must_use]
+    #[track_caller]
+    pub fn kernel(mut self, entry: KernelEntry) -> Self {
+        let taken = self.kernels.iter().any(|known| known.is_meant_by(entry.name) || entry.is_meant_by(known.name));
+        self.note("kernel", entry.name, taken, Location::caller());
+        self.kernels.push(entry);
+        self
+    }
+
     /// Adds an estimator.
     #[must_use]
     #[track_caller]
     pub fn estimator<E: Estimator + 'static>(mut self, name: &'static str, estimator: E) -> Self {
         let taken = self.estimators().any(|known| known.name == name);
         self.note("estimator", name, taken, Location::caller());
-        self.estimators.push(OwnEstimator::new(name, estimator));
+        self.estimators.push(CustomEstimator::new(name, estimator));
         self
     }
 
@@ -121,7 +133,7 @@ impl Lab {
     pub fn workload(mut self, name: &'static str, workload: impl Workload) -> Self {
         let taken = self.is_subject(name);
         self.note("workload", name, taken, Location::caller());
-        self.workloads.push(workload::Entry::own(name, workload));
+        self.workloads.push(workload::Entry::custom(name, workload));
         self
     }
 
@@ -131,7 +143,7 @@ impl Lab {
     pub fn scene(mut self, name: &str, text: &str) -> Self {
         let taken = self.is_subject(name);
         self.note("scene", name, taken, Location::caller());
-        self.scenes.add(OwnScene { name: name.to_string(), text: text.to_string() });
+        self.scenes.add(CustomScene { name: name.to_string(), text: text.to_string() });
         self
     }
 
@@ -187,14 +199,19 @@ impl Lab {
         }
     }
 
-    /// Returns the estimators, in the order in which they are listed.
-    pub fn estimators(&self) -> impl Iterator<Item = &EstimatorEntry> {
-        ESTIMATORS.iter().chain(self.estimators.iter().map(OwnEstimator::entry))
+    /// Returns the kernels, in the order in which they are listed.
+    pub fn kernels(&self) -> &[KernelEntry] {
+        &self.kernels
     }
 
-    /// Returns the estimators that a program added.
-    pub fn own_estimators(&self) -> &[OwnEstimator] {
-        &self.estimators
+    /// Returns the tables from which a kernel is chosen and built.
+    pub fn kernel_tables(&self) -> Tables<'_> {
+        Tables { kernels: &self.kernels, estimators: &self.estimators }
+    }
+
+    /// Returns the estimators, in the order in which they are listed.
+    pub fn estimators(&self) -> impl Iterator<Item = &EstimatorEntry> {
+        ESTIMATORS.iter().chain(self.estimators.iter().map(CustomEstimator::entry))
     }
 
     /// Returns the workloads, in the order in which they are listed.
@@ -233,7 +250,8 @@ impl Lab {
 mod tests {
     use super::*;
     use crate::kernel::workload::Mandelbrot;
-    use crate::scene::SCENES;
+    use crate::kernel::{Planned, SCALAR, Spec, choose_among};
+    use crate::scene::{SCENES, load};
 
     fn said(lab: &Lab) -> String {
         lab.check().err().map(|error| error.to_string()).unwrap_or_default()
@@ -246,6 +264,8 @@ mod tests {
         assert!(error.starts_with("workload = cornell: ") && error.contains("pathmark itself"), "{error}");
         let error = said(&Lab::new().scene("mine", "").workload("mine", Mandelbrot));
         assert_eq!(error.matches(file!()).count(), 2, "{error}");
+        let error = said(&Lab::new().kernel(SCALAR));
+        assert!(error.starts_with("kernel = scalar: "), "{error}");
         let error = said(&Lab::new().strategy(STRATEGIES[0]));
         assert!(error.starts_with(&format!("strategy = {}: ", STRATEGIES[0].name)), "{error}");
     }
@@ -266,6 +286,25 @@ mod tests {
         let lab = Lab::new();
         for entry in lab.workloads() {
             assert!(!SCENES.iter().any(|(name, _)| *name == entry.name), "{}", entry.name);
+        }
+    }
+
+    /// A kernel without code for a scene gives way to the scalar one, and the row says why. Errors name all kernels.
+    #[test]
+    fn custom_kernels_are_chosen_by_name() {
+        let picky = KernelEntry::new("picky", "renders nothing", |_| Ok(Planned::Unsupported("everything")));
+        let lab = Lab::new().kernel(picky);
+        let scene = load("cornell").unwrap();
+        let chosen = |kernel: &str| {
+            let spec = Spec { kernel: kernel.into(), ..Spec::default() };
+            choose_among(&scene, &spec, lab.kernel_tables()).map_err(|error| error.to_string())
+        };
+        let choice = chosen("picky").unwrap();
+        assert_eq!((choice.kernel(), choice.fallback()), ("scalar", "everything"));
+        assert_eq!(chosen("scalar").unwrap().fallback(), "");
+        for unknown in ["pick", "picky:1"] {
+            let error = chosen(unknown).err().unwrap();
+            assert!(error.contains("lanes, scalar, ") && error.contains(", picky"), "{error}");
         }
     }
 }

@@ -28,6 +28,5 @@ mod temporary;
 pub use lab::Lab;
 pub use pathmark_analysis as analysis;
 pub use pathmark_strategy as strategy;
-pub use pathmark_tracer::{
-    digest, effect, error, estimator, film, input, kernel, material, math, sampling, scene, simd,
-};
+pub use pathmark_lanes::{kernel, sampler, simd};
+pub use pathmark_tracer::{digest, effect, error, estimator, film, input, material, math, sampling, scene};

@@ -20,5 +20,3 @@ pub mod material;
 pub mod math;
 pub mod sampling;
 pub mod scene;
-#[doc(hidden)]
-pub mod simd;

@@ -2,7 +2,7 @@
 
 use pathmark::math::{Ray, Vec3, dot};
 use pathmark::sampling::{Address, Independent, Purpose, SampleKey, Sampler};
-use pathmark::scene::{AllEffects, SCENES, Scene, Standpoint, Tests, load};
+use pathmark::scene::{AllEffects, SCENES, Scene, SurfaceOrigin, Tests, load};
 
 fn lit(name: &str) -> Scene {
     let scene = load(name).unwrap();
@@ -57,7 +57,7 @@ fn densities_are_those_of_the_aims() {
         for k in 0..500 {
             let ray = view.ray::<AllEffects>(k * 7 % 64, k * 5 % 48, 0, [0.5, 0.5], || [0.5, 0.5]);
             let Some(hit) = scene.intersect::<AllEffects>(&ray, None, &mut Tests::default()) else { continue };
-            let on = Standpoint { primitive: hit.primitive, inside: hit.inside };
+            let on = SurfaceOrigin { primitive: hit.primitive, inside: hit.inside };
             for (point, from) in [(ray.at(0.5 * hit.t), None), (hit.point, Some(on))] {
                 let choice = || pair(k, Purpose::LightChoice)[0];
                 let Some(aim) = lights.aim(point, from, choice, pair(k, Purpose::Light)) else { continue };

@@ -1,13 +1,13 @@
 //! The ends of [0, 1) through every consumer of random numbers: R09, R11.
 
 use super::first;
-use crate::estimator::{AnyEstimator, ESTIMATORS, Options, Probe, any_estimator, camera_ray};
-use crate::math::{Ray, Rgb, dot};
 use crate::samplers::keyed;
-use crate::sampling::{Address, Independent, Purpose, SampleKey, Sampler, concentric_disk, mix, tent, unit};
-use crate::scene::{AllEffects, CAMERA_EXAMPLES, Fog, SCENES, Scan, Scene, Standpoint, accelerator, load};
 use crate::stage::{DIFFUSE, named, scene, sphere};
 use crate::{Case, Trials};
+use crate::estimator::{AnyEstimator, ESTIMATORS, Options, Probe, any_estimator, camera_ray};
+use crate::math::{Ray, Rgb, dot};
+use crate::sampling::{Address, Independent, Purpose, SampleKey, Sampler, concentric_disk, mix, tent, unit};
+use crate::scene::{AllEffects, CAMERA_EXAMPLES, Fog, SCENES, Scan, Scene, SurfaceOrigin, accelerator, load};
 
 pub(super) const CASES: &[Case] = &[
     Case { id: "R09", tries: "0 and 1 - 2^-53 through every camera, material, light and estimator", run: consumers },
@@ -97,7 +97,7 @@ fn cameras_and_lights(trials: &mut Trials) {
 fn aimed(scene: &Scene, ray: &Ray, u: [f64; 2]) -> (u64, u64) {
     let Some(lights) = &scene.lights else { return (0, 0) };
     let Some(hit) = scene.first_of_any(ray, None) else { return (0, 0) };
-    let on = Standpoint { primitive: hit.primitive, inside: hit.inside };
+    let on = SurfaceOrigin { primitive: hit.primitive, inside: hit.inside };
     let (mut tried, mut wrong) = (0, 0);
     for (point, from) in [(hit.point, Some(on)), (ray.at(0.5 * hit.t), None)] {
         for choice in [0.0, LAST] {

@@ -1,10 +1,10 @@
 //! Use of random numbers: each address at most once in a sample: R13.
 
-use crate::estimator::{AnyEstimator, ESTIMATORS, Options, any_estimator, camera_ray, seen_besides};
 use crate::samplers::keyed;
+use crate::{Case, Trials};
+use crate::estimator::{AnyEstimator, ESTIMATORS, Options, any_estimator, camera_ray, extra_camera_rays};
 use crate::sampling::{Address, SampleKey, Sampler};
 use crate::scene::{AllEffects, SCENES, Scan, Scene, accelerator, load};
-use crate::{Case, Trials};
 use std::collections::HashSet;
 use std::sync::{Mutex, PoisonError};
 
@@ -63,7 +63,7 @@ impl Samples<'_> {
             let place = [pixel % 16, pixel / 16];
             let ray = camera_ray::<Ledger, AllEffects, ()>(&view, place, key, 0, ledger, &mut ());
             estimator.estimate(scene, ray, key, ledger, &mut ());
-            seen_besides(scene, &view, place, key, 3, ledger, &mut ());
+            extra_camera_rays(scene, &view, place, key, 3, ledger, &mut ());
             let used = std::mem::take(&mut *ledger.used.lock().unwrap_or_else(PoisonError::into_inner));
             found.used += used.len() as u64;
             found.twice += (used.len() - used.iter().collect::<HashSet<_>>().len()) as u64;

@@ -2,14 +2,14 @@
 
 use super::unguarded::{SMALLPT_EPSILON, smallpt_first_root};
 use crate::bare_scene::{intersect, searches};
+use crate::random::Random;
+use crate::rendering::{by_kernel, render};
+use crate::stage::{DIFFUSE, camera, named, try_scene};
+use crate::{Case, Trials};
 use crate::estimator::ESTIMATORS;
 use crate::kernel::Spec;
 use crate::math::{Ray, Vec3};
-use crate::random::Random;
-use crate::rendering::{by_kernel, render};
-use crate::scene::{Scene, Standpoint, load};
-use crate::stage::{DIFFUSE, camera, named, try_scene};
-use crate::{Case, Trials};
+use crate::scene::{Scene, SurfaceOrigin, load};
 use std::sync::Arc;
 
 pub(super) const CASES: &[Case] = &[
@@ -80,7 +80,7 @@ fn edges(trials: &mut Trials) {
                 continue;
             };
             let ray = Ray { origin: ceiling.point, direction: Vec3::new(-1.0, -0.3, 0.1).normalized() };
-            let from = Standpoint { primitive: ceiling.primitive, inside: true };
+            let from = SurfaceOrigin { primitive: ceiling.primitive, inside: true };
             // The wall's slope is up to 1e-3, and the coordinates of its sphere are rounded at 1e-11.
             let expected = gap / -ray.direction.x;
             let wall = intersect(&scene, &ray, Some(from)).filter(|hit| name(hit.primitive) == "left wall");
@@ -116,7 +116,7 @@ fn lights(trials: &mut Trials) {
                 let point = Vec3::new(place(), 0.0, place());
                 // Excludes the very rim of the cone, where a tangent may miss.
                 let u = [random.unit(), (1.0 - 1e-9) * random.unit()];
-                let from = Some(Standpoint { primitive: 1, inside: false });
+                let from = Some(SurfaceOrigin { primitive: 1, inside: false });
                 let Some(aim) = lights.aim(point, from, || 0.0, u) else { continue };
                 let ray = Ray { origin: point, direction: aim.direction };
                 tried += 1;

@@ -4,11 +4,11 @@ use super::exact::U;
 use super::unguarded::{SMALLPT_EPSILON, smallpt_first_root};
 use super::walk::scatter;
 use crate::bare_scene::{intersect, searches};
-use crate::math::{Frame, Ray, Vec3};
 use crate::random::Random;
-use crate::scene::{Scene, Standpoint};
 use crate::stage::{ANY_CAMERA, DIFFUSE, GLASS, ball, try_scene};
 use crate::{Case, Trials};
+use crate::math::{Frame, Ray, Vec3};
+use crate::scene::{Scene, SurfaceOrigin};
 use std::f64::consts::TAU;
 
 pub(super) const CASES: &[Case] = &[
@@ -89,7 +89,7 @@ fn chords(
             let cos = cosine(&mut random);
             let direction = frame.to_world(Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos)).normalized();
             let ray = Ray { origin: center + normal * radius, direction };
-            let hit = intersect(&scene, &ray, Some(Standpoint { primitive: 0, inside: true }));
+            let hit = intersect(&scene, &ray, Some(SurfaceOrigin { primitive: 0, inside: true }));
             let error = hit.filter(|hit| hit.primitive == 0).map_or(f64::NAN, |hit| (hit.t - 2.0 * radius * cos).abs());
             worst = worst.max(error);
             wrong += u64::from(error.is_nan() || error > tolerance);

@@ -2,10 +2,10 @@
 //! degrees, so an error e in a distance moves the edge between them by 33 e.
 
 use crate::bare_scene::{intersect, searches};
-use crate::math::{Frame, Ray, Vec3, dot};
 use crate::random::Random;
-use crate::scene::{AllEffects, Hit, Scene, Standpoint, load};
 use crate::{Case, Trials};
+use crate::math::{Frame, Ray, Vec3, dot};
+use crate::scene::{AllEffects, Hit, Scene, SurfaceOrigin, load};
 use std::f64::consts::TAU;
 
 pub(super) const CASES: &[Case] = &[
@@ -91,7 +91,7 @@ fn sunken_balls(trials: &mut Trials) {
                 wrong += u64::from(!is_right && (rho - circle).abs() > BAND);
                 // A ray up from the floor inside the ball must hit the ball from within.
                 let Some(hit) = hit.filter(|hit| name(&scene, hit) == "floor" && rho < circle - BAND) else { continue };
-                let from = Some(Standpoint { primitive: hit.primitive, inside: true });
+                let from = Some(SurfaceOrigin { primitive: hit.primitive, inside: true });
                 let up = intersect(&scene, &Ray { origin: hit.point, direction: -down }, from);
                 outside_in += u64::from(!up.is_some_and(|up| name(&scene, &up) == ball && up.inside));
             }

@@ -2,11 +2,11 @@
 
 use super::exact::U;
 use crate::bare_scene::{intersect, scene_of, scene_of_spheres, searches};
-use crate::math::{Ray, Vec3, dot};
 use crate::meshes::star;
 use crate::random::Random;
-use crate::scene::{Plane, Primitives, Scene, Sphere, Standpoint, Triangle};
 use crate::{Case, Trials};
+use crate::math::{Ray, Vec3, dot};
+use crate::scene::{Plane, Primitives, Scene, Sphere, SurfaceOrigin, Triangle};
 use std::collections::BTreeMap;
 
 pub(super) const CASES: &[Case] = &[
@@ -35,7 +35,7 @@ fn leaving(trials: &mut Trials) {
                 let origin = sphere.center + normal * radius;
                 let outwards = if dot(any, normal) < 0.0 { -any } else { any };
                 let leave = |direction: Vec3, inside: bool| {
-                    let standpoint = Standpoint { primitive: 0, inside };
+                    let standpoint = SurfaceOrigin { primitive: 0, inside };
                     intersect(&scene, &Ray { origin, direction }, Some(standpoint)).map(|hit| hit.t)
                 };
                 *again += u64::from(leave(outwards, false).is_some());
@@ -68,7 +68,7 @@ fn leaving_a_mesh(trials: &mut Trials) {
             if dot(direction, hit.normal) < 0.0 {
                 direction = -direction;
             }
-            let standpoint = Standpoint { primitive: hit.primitive, inside: false };
+            let standpoint = SurfaceOrigin { primitive: hit.primitive, inside: false };
             again += u64::from(intersect(&mesh, &Ray { origin: hit.point, direction }, Some(standpoint)).is_some());
             left += 1;
         }
@@ -103,7 +103,7 @@ fn awkward_points(trials: &mut Trials) {
             for (name, scene) in searches(&scene) {
                 let [back, ahead] = [-1.0, 1.0].map(|side| {
                     let ray = Ray { origin: Vec3::new(x, 0.0, 0.0), direction: Vec3::new(side, 0.0, 0.0) };
-                    let from = Standpoint { primitive: 0, inside: side < 0.0 };
+                    let from = SurfaceOrigin { primitive: 0, inside: side < 0.0 };
                     intersect(&scene, &ray, Some(from))
                 });
                 let error = ahead.filter(|hit| hit.primitive == 1).map_or(f64::NAN, |hit| hit.t - ((x + gap) - x));

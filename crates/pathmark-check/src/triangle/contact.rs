@@ -3,15 +3,15 @@
 use super::single::U;
 use crate::analysis::z_test::{critical_value, sidak};
 use crate::bare_scene::{intersect, searches};
-use crate::estimator::ESTIMATORS;
 use crate::exact::mean;
-use crate::kernel::{KERNELS, Spec};
-use crate::math::{Ray, Vec3, dot};
 use crate::random::Random;
 use crate::rendering::{by_kernel, render};
-use crate::scene::{Scene, Standpoint};
 use crate::stage::{ball, camera, named, try_scene};
 use crate::{Case, Trials};
+use crate::estimator::ESTIMATORS;
+use crate::kernel::{KERNELS, Spec};
+use crate::math::{Ray, Vec3, dot};
+use crate::scene::{Scene, SurfaceOrigin};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -115,7 +115,7 @@ fn directions(trials: &mut Trials, scene: &Arc<Scene>) {
         for _ in 0..rays {
             let any = random.direction();
             let direction = if any.y < 0.0 { -any } else { any };
-            let from = Some(Standpoint { primitive: 1, inside: false });
+            let from = Some(SurfaceOrigin { primitive: 1, inside: false });
             let hit = intersect(&scene, &Ray { origin: point, direction }, from);
             let beyond = dot(direction, towards) - cos;
             wrong += u64::from(hit.is_some() != (beyond > 0.0) && beyond.abs() > 64.0 * U);

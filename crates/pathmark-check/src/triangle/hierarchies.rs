@@ -1,11 +1,11 @@
 //! Hierarchies compared with testing every primitive: the same primitive and the same bits of distance.
 
 use crate::bare_scene::{intersect, scene_of, searches};
-use crate::math::{Ray, Vec3, dot};
 use crate::meshes::{grid_cube, star};
 use crate::random::Random;
-use crate::scene::{Hit, Plane, Primitives, Scene, Sphere, Standpoint, Triangle};
 use crate::{Case, Trials};
+use crate::math::{Ray, Vec3, dot};
+use crate::scene::{Hit, Plane, Primitives, Scene, Sphere, SurfaceOrigin, Triangle};
 
 pub(super) const CASES: &[Case] = &[Case {
     id: "T13",
@@ -100,7 +100,7 @@ fn compare(all: &Scene, accelerated: &Scene, rays: u64, make_ray: MakeRay) -> Ta
             tally.hits += 1;
             let on_grid = random.below(2) == 0;
             let direction = if on_grid { grid_ray(&mut random, &all.primitives).direction } else { random.direction() };
-            from = Some(Standpoint { primitive: hit.primitive, inside: dot(direction, hit.normal) < 0.0 });
+            from = Some(SurfaceOrigin { primitive: hit.primitive, inside: dot(direction, hit.normal) < 0.0 });
             ray = Ray { origin: hit.point, direction };
         }
     }

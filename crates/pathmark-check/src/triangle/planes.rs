@@ -2,12 +2,12 @@
 
 use super::single::U;
 use crate::bare_scene::{intersect, scene_of, searches};
-use crate::math::{Frame, Ray, Vec3, dot};
 use crate::random::Random;
 use crate::refusals::refuses_shape;
-use crate::scene::{Plane, Primitive, Primitives, Scene, Standpoint};
 use crate::stage::{ANY_CAMERA, DIFFUSE, named, try_scene};
 use crate::{Case, Trials};
+use crate::math::{Frame, Ray, Vec3, dot};
+use crate::scene::{Plane, Primitive, Primitives, Scene, SurfaceOrigin};
 
 pub(super) const CASES: &[Case] = &[
     Case { id: "T16", tries: "planes met at cosines down to 1e-90, from both sides", run: flat_angles },
@@ -108,7 +108,7 @@ fn starting_on_it(trials: &mut Trials) {
         let seen = Ray { origin: random.direction() * random.scale(-3.0, 3.0), direction: random.direction() };
         let Some(hit) = intersect(&scene, &seen, None) else { continue };
         let direction = random.direction();
-        let from = Standpoint { primitive: 0, inside: dot(direction, hit.normal) < 0.0 };
+        let from = SurfaceOrigin { primitive: 0, inside: dot(direction, hit.normal) < 0.0 };
         again += u64::from(intersect(&scene, &Ray { origin: hit.point, direction }, Some(from)).is_some());
         started += 1;
     }

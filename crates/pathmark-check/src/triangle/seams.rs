@@ -4,14 +4,14 @@
 use super::single::{scene, towards};
 use crate::bare_scene::{intersect, searches};
 use crate::image_mean::{self, Moments};
-use crate::kernel::Spec;
-use crate::math::{Frame, Ray, Vec3};
 use crate::meshes::icosphere;
 use crate::random::Random;
-use crate::scene::{Primitive, Primitives, Scene, Standpoint, Triangle};
-use crate::simd::Precision;
 use crate::stage::{self, GLASS, camera, diffuse, object, plane, quad};
 use crate::{Case, Trials};
+use crate::kernel::Spec;
+use crate::math::{Frame, Ray, Vec3};
+use crate::scene::{Primitive, Primitives, Scene, SurfaceOrigin, Triangle};
+use crate::simd::Precision;
 
 pub(super) const CASES: &[Case] = &[
     Case {
@@ -111,7 +111,7 @@ fn rays_from_seams(trials: &mut Trials) {
                 let flat = random.scale(-6.0, 0.0);
                 let outwards = Frame::around(hit.normal).to_world(Vec3::new(local.x, local.y, local.z.abs() * flat));
                 for (side, inside) in [(outwards, false), (-outwards, true)] {
-                    let from = Some(Standpoint { primitive: hit.primitive, inside });
+                    let from = Some(SurfaceOrigin { primitive: hit.primitive, inside });
                     let ray = Ray { origin: hit.point, direction: side.normalized() };
                     own += u64::from(scene.primitives.triangles[hit.primitive as usize].leave(&ray, inside) > 0.0);
                     let met = intersect(&scene, &ray, from);

@@ -5,13 +5,13 @@ use super::hierarchies::in_cube;
 use super::single::towards;
 use crate::bare_scene::{intersect, scene_of, searches};
 use crate::image_mean;
-use crate::kernel::{KERNELS, Spec};
-use crate::math::{Ray, Vec3, dot};
 use crate::random::Random;
-use crate::scene::{ACCELERATORS, Hit, Primitives, Scene, Sphere, Standpoint, Triangle};
-use crate::simd::Precision;
 use crate::stage::{self, diffuse, object, quad, view};
 use crate::{Case, Trials};
+use crate::kernel::{KERNELS, Spec};
+use crate::math::{Ray, Vec3, dot};
+use crate::scene::{ACCELERATORS, Hit, Primitives, Scene, Sphere, SurfaceOrigin, Triangle};
+use crate::simd::Precision;
 
 pub(super) const CASES: &[Case] = &[
     Case {
@@ -107,7 +107,7 @@ fn compare(trials: &mut Trials, what: &str, scenes: u64, mut primitives: impl Fn
                     let is_blocked = |limit| scene.is_blocked_by_any(&ray, from, limit);
                     *blocked_otherwise += u64::from(is_blocked(hit.t) || !is_blocked(hit.t.next_up()));
                 }
-                from = Some(Standpoint { primitive: hit.primitive, inside: false });
+                from = Some(SurfaceOrigin { primitive: hit.primitive, inside: false });
                 origin = hit.point;
             }
         }

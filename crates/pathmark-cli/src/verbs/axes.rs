@@ -9,13 +9,11 @@ use clap::builder::ValueParser;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, value_parser};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The values of the options for *what* is rendered, or of those for pieces and workers.
 pub(super) struct Options<const WHAT: bool> {
     values: Vec<(&'static Axis, String)>,
-    /// Folder of hierarchies, which change no image.
-    cache: Option<PathBuf>,
 }
 
 /// The options for *what* is rendered.
@@ -64,14 +62,6 @@ fn device_option() -> Arg {
     Arg::new(DEVICE).long(DEVICE).value_name("ID").help(about).help_heading("Image")
 }
 
-const CACHE: &str = "cache";
-
-fn cache_option() -> Arg {
-    let about = "Keep the hierarchies of scenes with 4096 or more primitives in this folder, and reuse them the next time; the build time of such scenes is not recorded";
-    let option = Arg::new(CACHE).long(CACHE).value_name("FOLDER").help(about).help_heading("Output");
-    option.value_parser(value_parser!(PathBuf))
-}
-
 /// The check that clap makes before the program reads a value.
 fn parser(axis: &Axis) -> ValueParser {
     match (axis.field)(&mut Settings::default()) {
@@ -100,7 +90,7 @@ impl<const WHAT: bool> Options<WHAT> {
 
 impl<const WHAT: bool> Args for Options<WHAT> {
     fn augment_args(command: Command) -> Command {
-        let command = if WHAT { command.args([device_option(), cache_option()]) } else { command };
+        let command = if WHAT { command.arg(device_option()) } else { command };
         command.args(Self::axes().map(|axis| {
             let option = Arg::new(axis.name).long(axis.name).value_name(axis.value_name).help(axis.about);
             let option = option.help_heading(if WHAT { "Image" } else { "Schedule" });
@@ -128,8 +118,7 @@ impl<const WHAT: bool> FromArgMatches for Options<WHAT> {
                 _ => Some((axis, value)),
             }
         };
-        let cache = if WHAT { matches.get_one::<PathBuf>(CACHE).cloned() } else { None };
-        let options = Self { values: Self::axes().filter_map(given).collect(), cache };
+        let options = Self { values: Self::axes().filter_map(given).collect() };
         match (device, options.value("kernel")) {
             (Some(id), Some(kernel)) if !kernel.starts_with(DEVICE) => {
                 let problem = format!("--device {id} requires the kernel {DEVICE}, but --kernel is {kernel}\n");
@@ -162,15 +151,11 @@ fn default_estimator(lab: &Lab, scene: &str) -> Result<String> {
     Err(error.allowed(names.join(", ")).in_file(scene, at).into())
 }
 
-/// Refuses a cache and options about light, which a workload would ignore.
+/// Refuses options about light, which a workload would ignore.
 fn check_for_workload(settings: &Settings) -> Result<()> {
     let mut base = Settings::default();
     base.spec.estimator.clear();
     let mut of_light = AXES.iter().filter(|axis| axis.of_light);
-    if let Some(folder) = &settings.cache {
-        let problem = format!("does not apply to {}, which is a workload", settings.scene);
-        return Err(InputError::new(CACHE, folder.display().to_string(), problem).allowed("no folder").into());
-    }
     match of_light.find(|axis| axis.show(settings) != axis.show(&base)) {
         None => Ok(()),
         Some(axis) => {
@@ -185,8 +170,7 @@ impl What {
     /// Settings with these options, and with the default schedule.
     pub(super) fn settings(&self, lab: &Lab, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
         let spec = Spec { seed, estimator: String::new(), ..Spec::default() };
-        let cache = self.cache.clone();
-        let mut settings = Settings { scene: scene.to_string(), spp, spec, cache, ..Settings::default() };
+        let mut settings = Settings { scene: scene.to_string(), spp, spec, ..Settings::default() };
         self.apply(&mut settings)?;
         if seed > LARGEST_SEED {
             let problem = "is reserved for references";

@@ -5,7 +5,9 @@ use crate::error::Result;
 use crate::experiment::{Definition, keys};
 use crate::film::DECOMPOSITIONS;
 use crate::image_io::FORMATS;
-use crate::kernel::{DEVICE_KERNEL, Device, KERNELS, Spec, choose, devices};
+#[cfg(feature = "device")]
+use crate::kernel::{Device, devices};
+use crate::kernel::{KernelEntry, Spec, choose};
 use crate::lab::Lab;
 use crate::material::MATERIALS;
 use crate::measure::{COLUMNS, Column, OUTPUTS, WARNINGS};
@@ -39,6 +41,7 @@ enum Kind {
     Samplers,
     Kernels,
     Simd,
+    #[cfg(feature = "device")]
     Devices,
     Effects,
     Accelerators,
@@ -88,16 +91,9 @@ fn about_column(column: &Column) -> String {
 }
 
 /// The name that a driver gives a device, or why there is none.
+#[cfg(feature = "device")]
 fn about_device(device: &Device) -> String {
     if device.is_there { device.about.clone() } else { format!("none: {}", device.about) }
-}
-
-/// The kernels of the processor, and one for each available device.
-fn kernels() -> Vec<Item> {
-    let on_processor = KERNELS.iter().map(|entry| item(entry.name, entry.about));
-    let there = devices().into_iter().filter(|device| device.is_there);
-    let on_device = there.map(|device| item(&format!("{}:{}", DEVICE_KERNEL.name, device.id), DEVICE_KERNEL.about));
-    on_processor.chain(on_device).collect()
 }
 
 fn scene_item(lab: &Lab, name: &str) -> Result<Item> {
@@ -121,8 +117,13 @@ fn items(lab: &Arc<Lab>, kind: Kind) -> Result<Vec<Item>> {
         Kind::Outputs => OUTPUTS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Estimators => lab.estimators().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Samplers => SAMPLERS.iter().map(|entry| item(entry.name, entry.about)).collect(),
-        Kind::Kernels => kernels(),
+        Kind::Kernels => {
+            let named =
+                |entry: &KernelEntry| entry.names().iter().map(|name| item(name, entry.about)).collect::<Vec<_>>();
+            lab.kernels().iter().flat_map(named).collect()
+        }
         Kind::Simd => LEVELS.iter().map(|level| item(level.name, level.about)).collect(),
+        #[cfg(feature = "device")]
         Kind::Devices => devices().iter().map(|device| item(&device.id, &about_device(device))).collect(),
         Kind::Effects => PROFILES.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Accelerators => ACCELERATORS.iter().map(|entry| item(entry.name, entry.about)).collect(),

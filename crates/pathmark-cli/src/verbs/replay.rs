@@ -3,7 +3,7 @@
 use super::axes::{What, no_paths};
 use crate::console::output::{self, print, print_json};
 use crate::error::{Error, InputError, Result};
-use crate::kernel::{self, Choice, Event, Inspector, PathLog, Spec};
+use crate::kernel::{self, Event, Inspector, PathLog, RenderOptions, Spec};
 use crate::lab::Lab;
 use crate::math::{Rgb, Vec3};
 use crate::measure::{AXES, InvalidSample, LARGEST_SPP, Settings};
@@ -52,7 +52,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     let spec = &setup.settings().spec;
     let (x, y) = pixel(&arguments.pixel, spec)?;
 
-    let (given, counts) = kernel::one_sample(&*kernel::construct(scene, choice)?, [x, y], sample);
+    let (given, counts) = kernel::one_sample(&*choice.build(scene)?, [x, y], sample);
     let is_valid = counts.invalid == 0;
     let precision = choice.precision();
     // Lanes keep no log, and only lanes have other precisions.
@@ -106,7 +106,7 @@ fn pixel(text: &str, spec: &Spec) -> Result<(u32, u32)> {
 }
 
 /// Traces the path again with a log, and checks that its radiance equals the kernel's bit for bit.
-fn path(scene: &Arc<Scene>, choice: &Choice, at: (u32, u32, u32), given: [f64; 3]) -> Result<(PathLog, Rgb)> {
+fn path(scene: &Arc<Scene>, choice: &RenderOptions, at: (u32, u32, u32), given: [f64; 3]) -> Result<(PathLog, Rgb)> {
     let mut log = PathLog::default();
     let radiance = Inspector::new(scene, choice)?.estimate(at.0, at.1, at.2, &mut log);
     let expected = if radiance.is_valid_radiance() { radiance } else { Rgb::BLACK };

@@ -67,10 +67,6 @@ pub(crate) struct Arguments {
     /// [default: the experiment's, or ten times the estimated time, at least a minute]
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     timeout: Option<String>,
-    /// Keep the hierarchies of scenes with 4096 or more primitives in this folder, and reuse them the next time; the column
-    /// `build_s` of such scenes is empty
-    #[arg(long, value_name = "FOLDER", conflicts_with = "against")]
-    cache: Option<PathBuf>,
     #[command(flatten)]
     size: profile::Choice,
     #[command(flatten)]
@@ -97,7 +93,6 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         timeout: arguments.timeout.as_deref().map(Timeout::parse).transpose()?,
         rerun_doubtful: arguments.rerun_doubtful,
         count_instructions: arguments.count_instructions,
-        cache: arguments.cache.clone(),
         command: command_line(),
     };
     let mut files = Files::default();

@@ -15,7 +15,7 @@ use crate::error::{Error, InputError, Result};
 use crate::film::SAMPLE_BLOCK;
 use crate::film_file::read_film;
 use crate::image_io::{self, Image};
-use crate::kernel::DEVICE_KERNEL;
+use crate::kernel::DEVICE_NAME;
 use crate::lab::Lab;
 use crate::measure::{
     Measured, Outcome, Record, Rounds, Settings, Setup, TraceFile, Warning, failure, missing_external, run_external,
@@ -133,7 +133,7 @@ impl CellJob {
         if let Some((ranks, rule)) = self.settings.ranks.zip(self.settings.rank_rule.as_deref()) {
             return self.by_processes(lab, ranks, rule, references.as_ref());
         }
-        if self.settings.spec.kernel == DEVICE_KERNEL.name
+        if self.settings.spec.kernel == DEVICE_NAME
             && let Some(rows) = self.without_device(lab)?
         {
             return Ok(rows);

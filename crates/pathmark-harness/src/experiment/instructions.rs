@@ -9,7 +9,6 @@ use super::time_limit::{Limits, timed_out};
 use super::{Cell, Progress, Sweep, folder_against, process_group};
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
-use crate::measure::Settings;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::env;
@@ -66,9 +65,7 @@ impl Sweep<'_> {
 fn count(job: &CellJob, program: &Path, limit: Option<Duration>) -> std::result::Result<u64, String> {
     // The process only renders the image: it reads, writes and compares nothing else.
     let points = job.points.iter().map(|point| PointJob { image: None, ..point.clone() }).collect();
-    // With a cache, the count would depend on whether another run has built the hierarchy.
-    let settings = Settings { cache: None, ..job.settings.clone() };
-    let job = CellJob { points, settings, references: None, object: None, trace: None, ..job.clone() };
+    let job = CellJob { points, references: None, object: None, trace: None, ..job.clone() };
     let text = serde_json::to_string(&job).map_err(|e| format!("describing the cell: {e}"))?;
     let mut command = Command::new(COUNTER);
     command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(program).arg("cell");

@@ -169,7 +169,6 @@ fn check(parts: &[Part]) -> Result<Vec<String>> {
             let RunFile { profile, definition_hash, machine, .. } = &part.run;
             let mut facts = vec![("parts", part.shard.count.to_string()), ("profile", profile.clone())];
             facts.push(("definition", definition_hash.clone()));
-            facts.push(("cache", part.run.cached.to_string()));
             facts.extend(machine.build());
             facts
         };

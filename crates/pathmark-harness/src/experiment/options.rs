@@ -30,8 +30,6 @@ pub struct Options {
     pub rerun_doubtful: bool,
     /// Whether the instructions of each cell are counted, too.
     pub count_instructions: bool,
-    /// Folder in which cells look up and store the hierarchies of large scenes.
-    pub cache: Option<PathBuf>,
     /// The command as the user gave it.
     pub command: String,
 }
@@ -52,7 +50,6 @@ impl Options {
             timeout: None,
             rerun_doubtful: false,
             count_instructions: false,
-            cache: None,
             command: String::new(),
         }
     }

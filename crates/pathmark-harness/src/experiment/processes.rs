@@ -77,8 +77,7 @@ fn options(settings: &Settings, rule: &str) -> Vec<OsString> {
         }
     }
     options.extend(["--ranks".to_string(), rule.to_string()]);
-    let cache = settings.cache.iter().flat_map(|folder| [OsString::from("--cache"), folder.clone().into_os_string()]);
-    options.into_iter().map(OsString::from).chain(cache).collect()
+    options.into_iter().map(OsString::from).collect()
 }
 
 /// The record that the first process printed; its merge time includes the time of gathering.

@@ -49,9 +49,6 @@ pub struct RunFile {
     /// Whether the command set the repetitions, so that the limits of matrices did not apply.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub uncapped: bool,
-    /// Whether cells could take hierarchies from a `--cache` instead of building them.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub cached: bool,
     /// SHA-256 of the definition's text, shortened to 16 hexadecimal digits.
     pub definition_hash: String,
     /// The machine and the build.
@@ -83,7 +80,6 @@ impl RunFile {
             rows: None,
             until: None,
             uncapped: false,
-            cached: false,
             definition_hash: String::new(),
             machine: Machine::look(),
         }
@@ -113,12 +109,10 @@ impl RunFile {
         };
         // Rows of an older version do not tell their program.
         let program = if self.program.is_empty() { &now.program } else { &self.program };
-        let cache = |run: &Self| if run.cached { "a folder" } else { "none" }.to_string();
         let mut pairs = vec![
             ("profile", self.profile.clone(), now.profile.clone()),
             ("shard", part(self), part(now)),
             ("until", until(self, now), until(now, self)),
-            ("cache", cache(self), cache(now)),
             ("program", program.clone(), now.program.clone()),
         ];
         pairs.extend(self.machine.difference(&now.machine));
@@ -151,7 +145,6 @@ impl Sweep<'_> {
             rows: Some(cells.iter().map(rows).sum()),
             until: until.as_ref().map(|until| until.text.clone()),
             uncapped: options.say_how_often(),
-            cached: options.cache.is_some(),
             definition_hash: digest::of_text(&definition.text),
             ..RunFile::of_now(options.command.clone())
         })

@@ -21,7 +21,7 @@ use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
 use crate::film::Film;
-use crate::measure::{Doubts, LeftOut, Record, Settings, check_cache};
+use crate::measure::{Doubts, LeftOut, Record, Settings};
 use crate::temporary;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -258,7 +258,7 @@ impl<'a> Sweep<'a> {
             points: cell.points.iter().map(point_job).collect(),
             repetition,
             order,
-            settings: Settings { cache: self.options.cache.clone(), ..cell.settings.clone() },
+            settings: cell.settings.clone(),
             scene: cell.scene.clone(),
             references: halves,
             object: definition.object().map(str::to_string),
@@ -347,13 +347,10 @@ fn references<'a>(
 
 /// Refuses paths that cannot be passed to a cell's process, and names that no file can have.
 fn check_names(definition: &Definition, options: &Options, cells: &[Cell]) -> Result<()> {
-    for (option, path) in [("out", Some(&options.out)), ("cache", options.cache.as_ref())] {
-        if let Some(path) = path.filter(|path| path.to_str().is_none()) {
-            let problem = "is not UTF-8 text, which the processes of cells require";
-            return Err(InputError::new(option, path.to_string_lossy(), problem).into());
-        }
+    if options.out.to_str().is_none() {
+        let problem = "is not UTF-8 text, which the processes of cells require";
+        return Err(InputError::new("out", options.out.to_string_lossy(), problem).into());
     }
-    options.cache.as_deref().map_or(Ok(()), check_cache)?;
     formula::check_names(definition, cells)?;
     for cell in cells {
         if definition.keeps(Keep::Traces) {

@@ -171,7 +171,7 @@ pub static AXES: [Axis; 24] = [
     Axis::new("clamp", |s| Fitting(&mut s.spec.clamp)).image().light(),
     Axis::new("filter", |s| Fitting(&mut s.spec.filter)).image().light().all(all_filters).option("NAME", "Pixel filter: tent, box or center [default: the camera's own]"),
     Axis::new("epsilon", |s| Fitting(&mut s.spec.epsilon)).image().light().option("DISTANCE", "Drop hits nearer than DISTANCE, as some programs do to exclude the surface where a ray starts: biased, scalar kernel only [default: none needed]"),
-    Axis::new("kernel", |s| Name(&mut s.spec.kernel)).light().option("NAME", "Kernel: lanes, scalar, device, or device:ID for a device of `pathmark list devices`").default("lanes"),
+    Axis::new("kernel", |s| Name(&mut s.spec.kernel)).light().option("NAME", "Kernel: one of `pathmark list kernels`, `device` for the first GPU, or lanes+device:ID for lanes and a device together").default("lanes"),
     Axis::new("simd", |s| Fitting(&mut s.spec.simd)).light().all(all_levels).option("LEVEL", "Instruction set of lanes: one of `pathmark list simd` [default: the fastest that this processor supports]"),
     Axis::new("precision", |s| Name(&mut s.spec.precision)).image().light().option("FORMAT", "Floating-point format: f64, or f32, which produces different bits and does not work with the scalar kernel").default("f64"),
     Axis::new("effects", |s| Fitting(&mut s.spec.effects)).light().option("PROFILE", "Effect profile [default: the smallest that covers the scene]"),

@@ -38,7 +38,6 @@ mod share;
 mod stamp;
 mod trace;
 mod trace_file;
-mod tree_folder;
 mod usage;
 mod warning;
 
@@ -71,5 +70,4 @@ pub use share::{DoneJob, MergedShare, Share};
 pub use stamp::Stamp;
 pub use trace::{JobSpan, Trace};
 pub use trace_file::{TraceFile, TraceHeader, TraceRow};
-pub use tree_folder::check_cache;
 pub use warning::{WARNINGS, Warning, WarningEntry};

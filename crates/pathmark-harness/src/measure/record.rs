@@ -6,7 +6,7 @@ use super::{Outcome, Settings, Setup, Warning, utc_now};
 use crate::analysis::quantile::median;
 use crate::error::Result;
 use crate::image_io::Image;
-use crate::kernel::Choice;
+use crate::kernel::RenderOptions;
 use crate::kernel::workload::WORKLOAD;
 use crate::metric;
 use crate::scene::{Filter, Scene};
@@ -99,7 +99,7 @@ columns! {
         pub jobs: usize,
         /// Workers that did at least one job; empty, like all measurements, if the run failed.
         pub workers_used: Option<u32>,
-        /// Seconds to build the kernel and the scene's acceleration structure; empty if `--cache` may have supplied the structure.
+        /// Seconds to build the kernel and the scene's acceleration structure.
         pub build_s: Option<f64>,
         /// Seconds of `build_s` to compile programs for devices; empty without devices.
         pub device_compile_s: Option<f64>,
@@ -329,12 +329,13 @@ impl Record {
         let described = described(setup.settings());
         let mut record = Self { scene: setup.name().to_string(), scene_hash: setup.hash(), ..described };
         let choice = setup.scene().map(|(_, choice)| choice);
-        record.max_depth = choice.and_then(Choice::depth);
-        record.camera_rays = choice.map(Choice::camera_rays).filter(|rays| *rays > 1);
-        record.roulette = choice.and_then(Choice::roulette).map(|rule| rule.to_string()).unwrap_or_default();
-        record.precision = choice.map_or(Precision::F64, Choice::precision).name().to_string();
-        record.kernel = choice.map_or(WORKLOAD, Choice::kernel).to_string();
+        record.max_depth = choice.and_then(RenderOptions::depth);
+        record.camera_rays = choice.map(RenderOptions::camera_rays).filter(|rays| *rays > 1);
+        record.roulette = choice.and_then(RenderOptions::roulette).map(|rule| rule.to_string()).unwrap_or_default();
+        record.precision = choice.map_or(Precision::F64, RenderOptions::precision).name().to_string();
+        record.kernel = choice.map_or(WORKLOAD, RenderOptions::kernel).to_string();
         if let Some(choice) = choice {
+            record.estimator = choice.estimator().name.to_string();
             record.biased = choice.is_biased();
             record.clamp = choice.clamp().map(|clamp| clamp.to_string()).unwrap_or_default();
             record.filter = choice.filter().map(Filter::name).unwrap_or_default().to_string();
@@ -362,8 +363,7 @@ impl Record {
             let all = counts.rays * scene.owners.len() as u64;
             record.primitive_tests = Some(if choice.is_hierarchical() { counts.primitive_tests } else { all });
         }
-        let is_built = setup.scene().is_none_or(|(scene, choice)| !choice.asks_store(scene));
-        record.build_s = is_built.then_some(outcome.build_s);
+        record.build_s = Some(outcome.build_s);
         record.device_compile_s = outcome.device.map(|device| device.compile_s);
         record.device_copy_s = outcome.device.map(|device| device.copy_s);
         record.jobs = durations.len();

@@ -7,7 +7,6 @@ use crate::lab::{SERIAL, THREAD_PER_ROW};
 use crate::sampling::REFERENCE_SEEDS;
 use serde::{Deserialize, Serialize};
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
 use std::sync::LazyLock;
 
 /// Most workers that a user may request, and most threads that a strategy may start by its own rule: systems refuse
@@ -48,9 +47,6 @@ pub struct Settings {
     /// Number of processes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ranks: Option<u16>,
-    /// Folder in which hierarchies of large scenes are searched for and kept.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub cache: Option<PathBuf>,
 }
 
 impl Default for Settings {
@@ -66,7 +62,6 @@ impl Default for Settings {
             threads: available_threads(),
             rank_rule: None,
             ranks: None,
-            cache: None,
         }
     }
 }

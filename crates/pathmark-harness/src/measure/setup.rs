@@ -3,14 +3,13 @@
 use super::cut::cut;
 use super::output::{self, Delivery, OUTPUTS, Output};
 use super::settings::check_spp;
-use super::tree_folder::TreeFolder;
 use super::{Settings, Warning, available_threads, pilot};
 use crate::digest;
 use crate::error::{Error, InputError, Result};
 use crate::estimator::Estimator;
 use crate::film::{Decomposition, Plan};
 use crate::kernel::workload::Entry as Workload;
-use crate::kernel::{self, Choice, Clamped, Counts, Kernel, OwnEstimator, Spec};
+use crate::kernel::{self, Clamped, Counts, CustomEstimator, Kernel, RenderOptions, Spec, Tables};
 use crate::lab::{Lab, THREAD_PER_ROW};
 use crate::scene::{SUBPIXELS, Scene};
 use crate::strategy::{self, Config, Strategy, StrategyError, Workers};
@@ -38,7 +37,7 @@ pub struct Setup {
 #[derive(Clone)]
 enum Subject {
     /// A scene to render.
-    Scene { scene: Arc<Scene>, choice: Box<Choice> },
+    Scene { scene: Arc<Scene>, choice: Box<RenderOptions> },
     /// Work that is unrelated to light.
     Workload(Workload),
 }
@@ -50,7 +49,7 @@ struct Built {
 }
 
 impl Subject {
-    fn choice(&self) -> Option<&Choice> {
+    fn choice(&self) -> Option<&RenderOptions> {
         match self {
             Self::Scene { choice, .. } => Some(choice),
             Self::Workload(_) => None,
@@ -73,7 +72,7 @@ impl Lab {
 
     /// The same for a loaded scene; `settings.scene` is not read.
     pub fn prepare_scene(&self, scene: Arc<Scene>, settings: Settings) -> Result<Setup> {
-        let choice = chosen(&scene, &settings, self.own_estimators())?;
+        let choice = chosen(&scene, &settings, self.kernel_tables())?;
         Setup::new(self, Subject::Scene { scene, choice }, settings)
     }
 }
@@ -113,7 +112,7 @@ impl Setup {
                 .allowed(names.join(", "))
                 .into());
         };
-        let clamp = subject.choice().and_then(Choice::clamp);
+        let clamp = subject.choice().and_then(RenderOptions::clamp);
         if clamp.is_some_and(|clamp| clamp.what == Clamped::Subpixel) && decomposition.splits_samples() {
             let problem = "cannot be combined with the subpixel clamp, which needs all samples of a pixel at once";
             return Err(InputError::new("decomposition", &settings.decomposition, problem).into());
@@ -176,7 +175,8 @@ impl Setup {
     pub fn with<E: Estimator + 'static>(mut self, name: &'static str, estimator: E) -> Result<Self> {
         self.settings.spec.estimator = name.to_string();
         if let Subject::Scene { scene, choice } = &mut self.subject {
-            *choice = chosen(scene, &self.settings, &[OwnEstimator::new(name, estimator)])?;
+            let estimators = &[CustomEstimator::new(name, estimator)];
+            *choice = chosen(scene, &self.settings, Tables { estimators, ..kernel::TABLES })?;
         }
         check_spp(self.settings.spp, name, self.spp_multiple())?;
         self.built = OnceLock::new();
@@ -215,7 +215,7 @@ impl Setup {
     }
 
     /// The scene, and the choices that the settings make for it; `None` for a workload.
-    pub fn scene(&self) -> Option<(&Arc<Scene>, &Choice)> {
+    pub fn scene(&self) -> Option<(&Arc<Scene>, &RenderOptions)> {
         match &self.subject {
             Subject::Scene { scene, choice } => Some((scene, choice)),
             Subject::Workload(_) => None,
@@ -326,7 +326,7 @@ impl Setup {
         }
         let processors = available_threads();
         // Workers that serve devices wait for them.
-        let waiting = self.subject.choice().map_or(0, Choice::devices_beside);
+        let waiting = self.subject.choice().map_or(0, RenderOptions::devices_beside);
         if workers_used as usize > processors + waiting {
             warnings.push(Warning::Oversubscribed { workers: workers_used, processors });
         }
@@ -360,15 +360,13 @@ impl Subject {
 
     fn kernel(&self, spec: &Spec) -> Result<Box<dyn Kernel>> {
         match self {
-            Self::Scene { scene, choice } => kernel::construct(scene, choice),
+            Self::Scene { scene, choice } => choice.build(scene),
             Self::Workload(workload) => Ok(workload.kernel(spec.width, spec.height, spec.seed)),
         }
     }
 }
 
-/// The choice of a scene's kernel, with hierarchies from the folder in the settings.
-fn chosen(scene: &Scene, settings: &Settings, own: &[OwnEstimator]) -> Result<Box<Choice>> {
-    let choice = kernel::choose_among(scene, &settings.spec, own)?;
-    let Some(folder) = &settings.cache else { return Ok(Box::new(choice)) };
-    Ok(Box::new(choice.with_trees(Arc::new(TreeFolder::new(folder)?))))
+/// The choice of a scene's kernel.
+fn chosen(scene: &Scene, settings: &Settings, tables: Tables<'_>) -> Result<Box<RenderOptions>> {
+    kernel::choose_among(scene, &settings.spec, tables).map(Box::new)
 }

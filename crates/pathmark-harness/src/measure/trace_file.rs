@@ -85,7 +85,7 @@ impl TraceFile {
             let samples = samples.end - samples.start;
             TraceRow { job, worker, start_s, stop_s, paths, rays, x0, y0, x1, y1, first_sample, samples }
         });
-        let settings = Settings { spp: outcome.spp, cache: None, ..setup.settings().clone() };
+        let settings = Settings { spp: outcome.spp, ..setup.settings().clone() };
         let (makespan_s, workers, warnings) = (outcome.makespan_s, outcome.workers_used, outcome.warned());
         let header = TraceHeader { settings, makespan_s, workers, warnings };
         Self { header, rows: rows.collect() }

@@ -3,7 +3,7 @@
 use super::prelude::*;
 use crate::analysis::versus::equal_error;
 use crate::contenders::{Contender, contenders};
-use crate::kernel::DEVICE_KERNEL;
+use crate::kernel::DEVICE_NAME;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -135,7 +135,7 @@ fn plot(results: &Results, works: &[Vec<Line<'_>>], yardstick: &str) -> DotPlot 
         PlotRow::new(&lines[0].name, dots.collect())
     });
     let axis = Axis::log(format!("samples per second / those of the {yardstick} kernel")).including([1.0]);
-    let has_devices = kernels().any(|kernel| kernel.contains(DEVICE_KERNEL.name));
+    let has_devices = kernels().any(|kernel| kernel.contains(DEVICE_NAME));
     let title = if has_devices { "What SIMD lanes and devices are worth" } else { "What SIMD lanes are worth" };
     let mut plot = DotPlot::new(title, axis, rows.collect()).grouped(kernels());
     plot.guides = vec![(1.0, format!("the {yardstick} kernel"))];

@@ -25,6 +25,7 @@ pub fn camera_ray<S: Sampler, X: EffectSet, P: Probe>(
 }
 
 /// The weight of each camera ray in the mean of the light that a sample's camera rays see.
+#[inline]
 pub fn camera_share(camera_rays: u16) -> f64 {
     1.0 / f64::from(camera_rays)
 }
@@ -33,7 +34,7 @@ pub fn camera_share(camera_rays: u16) -> f64 {
 /// path scales the light that its own ray sees by [`camera_share`], so the sum is unbiased. This is splitting (Arvo and
 /// Kirk, "Particle transport and image synthesis", 1990) at the camera, where the other rays collect only emission.
 /// Compiled once, with every effect and for any sampler.
-pub fn seen_besides(
+pub fn extra_camera_rays(
     scene: &Scene,
     view: &View,
     pixel: [u32; 2],

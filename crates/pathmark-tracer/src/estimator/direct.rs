@@ -5,11 +5,11 @@ use super::medium::Medium;
 use crate::effect::EffectSet;
 use crate::math::{Ray, Rgb, Vec3, dot};
 use crate::sampling::UNIFORM_SPHERE_DENSITY;
-use crate::scene::{Hit, POINT_LIGHT, PointLight, REACH, Scene, Standpoint, Tests};
+use crate::scene::{Hit, POINT_LIGHT, PointLight, REACH, Scene, SurfaceOrigin, Tests};
 
 /// The part of the distance to a light in which a surface can hide it. A light that lies in a surface is not hidden by
 /// it: the rest is larger than a distance's rounding error. It is relative, so it is the same in scenes of any size.
-pub(crate) const HIDING: f64 = 1.0 - 1.0 / (1_u64 << 40) as f64;
+pub const HIDING: f64 = 1.0 - 1.0 / (1_u64 << 40) as f64;
 
 /// The straight line to a light.
 struct Way {
@@ -42,7 +42,7 @@ impl Way {
         scene: &Scene,
         light: &PointLight,
         point: Vec3,
-        from: Option<Standpoint>,
+        from: Option<SurfaceOrigin>,
         medium: Medium,
         probe: &mut P,
     ) -> Option<Rgb> {
@@ -83,7 +83,7 @@ pub(super) fn light_at_surface<X: EffectSet, P: Probe>(
         if !scattered.has_light() {
             continue;
         }
-        let from = Some(Standpoint { primitive: hit.primitive, inside: (wi.z < 0.0) != hit.inside });
+        let from = Some(SurfaceOrigin { primitive: hit.primitive, inside: (wi.z < 0.0) != hit.inside });
         let medium = medium.beyond::<X>(hit, wi);
         if let Some(irradiance) = way.arriving::<X, P>(scene, light, hit.point, from, medium, probe) {
             radiance += scattered * irradiance;

@@ -3,12 +3,10 @@
 //! A new estimator needs a file with a type that implements [`Estimator`] and a function that makes it from
 //! [`Options`], and a line in `estimators!` below.
 
-mod aimed;
 mod bsdf;
 mod camera_ray;
 mod direct;
 mod medium;
-mod mis;
 mod nee;
 mod path;
 mod roulette;
@@ -21,12 +19,12 @@ use crate::sampling::{SampleKey, Sampler};
 use crate::scene::{AllEffects, Hit, Scene, Tests};
 use std::sync::Arc;
 
-pub use aimed::power_heuristic;
 pub use bsdf::Bsdf;
-pub use camera_ray::{camera_ray, camera_share, seen_besides};
-pub(crate) use direct::HIDING;
-pub use path::{Aimed, MAX_BOUNCES, Path};
-pub(crate) use roulette::By;
+pub use camera_ray::{camera_ray, camera_share, extra_camera_rays};
+pub use direct::HIDING;
+pub use nee::{LightSampling, power_heuristic};
+pub use path::{MAX_BOUNCES, Nee, Path};
+pub use roulette::By;
 pub use roulette::Roulette;
 pub use smallpt::Smallpt;
 pub use whitted::Whitted;
@@ -96,8 +94,8 @@ impl Probe for &mut dyn Probe {
 pub struct PathRules {
     /// Number of first vertices at which a path follows both reflection and transmission; at most 2.
     pub splits: u16,
-    /// `None` without next-event estimation; otherwise whether it is weighted against hits of lights.
-    pub aims: Option<bool>,
+    /// The sampling of lights; `None` without next-event estimation.
+    pub nee: Option<LightSampling>,
     /// The bounce limit of a path.
     pub max_depth: u16,
     /// When and with which probability Russian roulette ends paths.
@@ -152,7 +150,7 @@ pub trait Estimator: Send + Sync {
     }
 
     /// The radiance along `ray` in W sr⁻¹ m⁻² per channel, as estimated by sample `key`. If a sample has several camera
-    /// rays, light at the end of this one is scaled by [`camera_share`], and [`seen_besides`] adds the rest.
+    /// rays, light at the end of this one is scaled by [`camera_share`], and [`extra_camera_rays`] adds the rest.
     fn sample<S: Sampler, X: EffectSet, P: Probe>(
         &self,
         scene: &Scene,
@@ -321,7 +319,7 @@ pub fn any_estimator(name: &str, options: Options) -> Option<Box<dyn AnyEstimato
 estimators! {
     "smallpt", "smallpt's estimator: glass splits at the first two vertices, roulette after the fifth" => Smallpt, Smallpt::new;
     "bsdf", "the same transport without splitting: one direction at every vertex" => Bsdf, Bsdf::new;
-    "nee", "next-event estimation: a shadow ray from every vertex to one light" => Path<Aimed>, nee::new;
-    "mis", "multiple importance sampling of lights and directions, by the power heuristic" => Path<Aimed>, mis::new;
+    "nee", "next-event estimation: a shadow ray from every vertex to one light" => Path<Nee>, Path::nee;
+    "mis", "multiple importance sampling of lights and directions, by the power heuristic" => Path<Nee>, Path::mis;
     "whitted", "Whitted's method of 1980: point lights, ideal mirrors and glass, no diffuse interreflection; 10 bounces" => Whitted, Whitted::new;
 }

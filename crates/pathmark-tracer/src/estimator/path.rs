@@ -4,15 +4,15 @@
 //! The path is a loop over a small stack: glass may split a path at its first vertices, and no scene can overflow the
 //! thread's stack.
 
-use super::aimed::{aimed_at_fog, aimed_at_surface, share_of_arrival};
 use super::direct::{light_at_fog, light_at_surface};
 use super::medium::Medium;
+use super::nee::{LightSampling, mis_weight_bsdf, nee_at_fog, nee_at_surface};
 use super::{Compiled, Estimator, Options, PathRules, Probe, Roulette, camera_share};
 use crate::effect::EffectSet;
 use crate::material::{BsdfSample, Density};
 use crate::math::{Ray, Rgb, Vec3, dot};
 use crate::sampling::{Address, Purpose, SampleKey, Sampler, UNIFORM_SPHERE_DENSITY, uniform_sphere};
-use crate::scene::{Aim, BACKGROUND, FOG, Hit, Scene, Standpoint, Tests};
+use crate::scene::{Aim, BACKGROUND, FOG, Hit, Scene, SurfaceOrigin, Tests};
 use std::marker::PhantomData;
 
 /// The default bounce limit. Only a closed scene that absorbs nothing reaches it, and such cuts are counted.
@@ -35,21 +35,12 @@ pub trait Rules: Send + Sync {
 
 /// The rules of `nee` and `mis`. They differ only in a run-time value, so one kernel serves both.
 #[derive(Debug, Clone, Copy)]
-pub struct Aimed;
+pub struct Nee;
 
-impl Rules for Aimed {
+impl Rules for Nee {
     const SPLITS: u16 = 0;
     const SPP_MULTIPLE: u32 = 1;
     const AIMS: bool = true;
-}
-
-/// How the emission of surfaces is counted under next-event estimation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Light {
-    /// By aiming from every vertex; a hit counts only where no light can be aimed at.
-    Aimed,
-    /// By aiming and by hits, weighted by their densities.
-    Weighted,
 }
 
 /// An estimator that follows paths by these rules.
@@ -58,7 +49,7 @@ pub struct Path<R> {
     max_depth: u16,
     roulette: Roulette,
     camera_rays: u16,
-    light: Light,
+    light: LightSampling,
     rules: PhantomData<R>,
 }
 
@@ -70,24 +61,33 @@ impl<R> Path<R> {
             roulette: options.roulette.unwrap_or(Roulette::SMALLPT),
             camera_rays: options.camera_rays(),
             // Estimators without next-event estimation do not read it.
-            light: Light::Weighted,
+            light: LightSampling::Mis,
             rules: PhantomData,
         }
     }
 }
 
-impl Path<Aimed> {
-    pub(super) fn aiming(light: Light, options: Options) -> Self {
-        Self { light, ..Self::new(options) }
+impl Path<Nee> {
+    /// `--estimator nee`: next-event estimation. The path samples a light from every vertex. Light that it then hits by
+    /// chance is not counted again. A hit counts where no light was sampled: behind mirrors and glass, for camera rays,
+    /// and on lights that are no target.
+    pub(super) fn nee(options: Options) -> Self {
+        Self { light: LightSampling::Nee, ..Self::new(options) }
+    }
+
+    /// `--estimator mis`: multiple importance sampling. Light is sampled as well as hit by chance, and each way is
+    /// weighted by its density with the power heuristic (Veach and Guibas, "Optimally Combining Sampling Techniques for
+    /// Monte Carlo Rendering", 1995).
+    pub(super) fn mis(options: Options) -> Self {
+        Self { light: LightSampling::Mis, ..Self::new(options) }
     }
 }
 
 impl<R: Rules> Estimator for Path<R> {
     fn rules(&self) -> Option<PathRules> {
-        let is_weighted = self.light == Light::Weighted;
-        let aims = R::AIMS.then_some(is_weighted);
+        let nee = R::AIMS.then_some(self.light);
         let Self { max_depth, roulette, camera_rays, .. } = *self;
-        Some(PathRules { splits: R::SPLITS, aims, max_depth, roulette, camera_rays })
+        Some(PathRules { splits: R::SPLITS, nee, max_depth, roulette, camera_rays })
     }
 
     const SPP_MULTIPLE: u32 = R::SPP_MULTIPLE;
@@ -165,7 +165,7 @@ struct Walk<'a, S> {
     sampler: &'a S,
     max_depth: u16,
     roulette: Roulette,
-    light: Light,
+    light: LightSampling,
     /// The share with which light at the end of the camera ray counts.
     seen_share: f64,
 }
@@ -174,7 +174,7 @@ struct Walk<'a, S> {
 #[derive(Clone, Copy)]
 struct Part {
     ray: Ray,
-    from: Option<Standpoint>,
+    from: Option<SurfaceOrigin>,
     /// The density of the ray's direction, per steradian, if its start used next-event estimation.
     density: Option<f64>,
     throughput: Rgb,
@@ -206,7 +206,7 @@ impl<S: Sampler> Walk<'_, S> {
 
     /// Samples a direction towards a light from the vertex that a part has reached.
     #[inline(always)]
-    fn aim<R: Rules>(&self, part: &Part, point: Vec3, from: Option<Standpoint>) -> Option<Aim> {
+    fn aim<R: Rules>(&self, part: &Part, point: Vec3, from: Option<SurfaceOrigin>) -> Option<Aim> {
         let lights = if R::AIMS { self.scene.lights.as_ref()? } else { return None };
         let choice = || self.pair(part, Purpose::LightChoice)[0];
         lights.aim(point, from, choice, self.pair(part, Purpose::Light))
@@ -273,7 +273,7 @@ impl<S: Sampler> Walk<'_, S> {
             && let (Some(density), Some(lights)) = (part.density, &scene.lights)
             && !emission.is_black()
         {
-            emission = emission * share_of_arrival(self.light, lights, &part.ray, part.from, hit, density);
+            emission = emission * mis_weight_bsdf(self.light, lights, &part.ray, part.from, hit, density);
         }
         let found = self.counted(&part, part.throughput * emission);
         probe.light(part.vertices, found);
@@ -292,9 +292,9 @@ impl<S: Sampler> Walk<'_, S> {
 
         let frame = hit.frame();
         let wo = frame.to_local(-part.ray.direction);
-        let standpoint = Standpoint { primitive: hit.primitive, inside: hit.inside };
+        let standpoint = SurfaceOrigin { primitive: hit.primitive, inside: hit.inside };
         if let Some(aim) = self.aim::<R>(&part, hit.point, Some(standpoint))
-            && let Some(found) = aimed_at_surface::<X, P>(self.light, scene, hit, (&frame, wo), aim, part.medium, probe)
+            && let Some(found) = nee_at_surface::<X, P>(self.light, scene, hit, (&frame, wo), aim, part.medium, probe)
         {
             probe.light(vertices, part.throughput * found);
             *collected += part.throughput * found;
@@ -317,7 +317,7 @@ impl<S: Sampler> Walk<'_, S> {
             // Over a chain of delta bounces the length would drift; all other directions are computed afresh.
             let direction = if sample.density == Density::Delta { towards.normalized() } else { towards };
             let ray = Ray { origin: hit.point, direction };
-            let from = Some(Standpoint { primitive: hit.primitive, inside: (sample.wi.z < 0.0) != hit.inside });
+            let from = Some(SurfaceOrigin { primitive: hit.primitive, inside: (sample.wi.z < 0.0) != hit.inside });
             let medium = part.medium.beyond::<X>(hit, sample.wi);
             let density = match sample.density {
                 Density::PerSolidAngle(density) if R::AIMS => Some(density),
@@ -372,7 +372,7 @@ impl<S: Sampler> Walk<'_, S> {
             *collected += part.throughput * direct;
         }
         if let Some(aim) = self.aim::<R>(&part, point, None)
-            && let Some(found) = aimed_at_fog::<X, P>(self.light, self.scene, point, aim, probe)
+            && let Some(found) = nee_at_fog::<X, P>(self.light, self.scene, point, aim, probe)
         {
             probe.light(vertices, part.throughput * found);
             *collected += part.throughput * found;

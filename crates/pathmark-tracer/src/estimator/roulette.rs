@@ -11,7 +11,7 @@ use std::fmt;
 
 /// The quantity that determines the survival probability.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum By {
+pub enum By {
     /// The largest channel of the vertex's albedo; in fog, of the transmittance.
     Albedo,
     /// The largest channel of the path's throughput after the vertex, at most 1.
@@ -23,7 +23,8 @@ pub(crate) enum By {
 /// A rule of Russian roulette: when and with which probability paths end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Roulette {
-    pub(crate) by: By,
+    /// The number that the survival of a path depends on.
+    pub by: By,
     after: u16,
 }
 
@@ -55,6 +56,7 @@ impl Roulette {
     }
 
     /// The number of first vertices without roulette.
+    #[inline]
     pub fn after(self) -> u16 {
         self.after
     }

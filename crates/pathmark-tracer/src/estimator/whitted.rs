@@ -12,7 +12,7 @@ use crate::effect::EffectSet;
 use crate::material::BsdfSample;
 use crate::math::{Frame, Ray, Rgb, dot};
 use crate::sampling::{SampleKey, Sampler};
-use crate::scene::{BACKGROUND, FOG, Hit, Scene, Standpoint, Tests};
+use crate::scene::{BACKGROUND, FOG, Hit, Scene, SurfaceOrigin, Tests};
 
 /// The default bounce limit.
 const DEFAULT_DEPTH: u16 = 10;
@@ -37,7 +37,7 @@ impl Whitted {
 #[derive(Clone, Copy)]
 struct Part {
     ray: Ray,
-    from: Option<Standpoint>,
+    from: Option<SurfaceOrigin>,
     throughput: Rgb,
     bounces: u16,
     medium: Medium,
@@ -147,7 +147,7 @@ impl Part {
     fn after<X: EffectSet>(&self, hit: &Hit, frame: &Frame, lobe: &BsdfSample) -> Option<Self> {
         let throughput = self.throughput * lobe.weight;
         let direction = frame.to_world(lobe.wi).normalized();
-        let from = Some(Standpoint { primitive: hit.primitive, inside: (lobe.wi.z < 0.0) != hit.inside });
+        let from = Some(SurfaceOrigin { primitive: hit.primitive, inside: (lobe.wi.z < 0.0) != hit.inside });
         let medium = self.medium.beyond::<X>(hit, lobe.wi);
         let ray = Ray { origin: hit.point, direction };
         (!throughput.is_black()).then_some(Self { ray, from, throughput, bounces: self.bounces + 1, medium })

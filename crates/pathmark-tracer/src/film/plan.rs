@@ -17,16 +17,19 @@ pub struct Bounds {
 
 impl Bounds {
     /// Number of columns.
+    #[inline]
     pub const fn width(&self) -> u32 {
         self.x1 - self.x0
     }
 
     /// Number of rows.
+    #[inline]
     pub const fn height(&self) -> u32 {
         self.y1 - self.y0
     }
 
     /// Number of pixels.
+    #[inline]
     pub const fn area(&self) -> usize {
         self.width() as usize * self.height() as usize
     }

@@ -80,7 +80,7 @@ impl SampleSum {
 
     /// Adds the sum of the next blocks, which was computed elsewhere. All parts but the last have the same number of
     /// blocks, a power of two.
-    pub(crate) fn add_part(&mut self, part: PixelSum, is_last: bool) {
+    pub fn add_part(&mut self, part: PixelSum, is_last: bool) {
         self.block = part;
         if !is_last {
             self.carry();
@@ -99,6 +99,7 @@ impl SampleSum {
     }
 
     /// The sum of all samples: the unfinished block, then the subtrees from the smallest up.
+    #[inline]
     pub fn total(&self) -> PixelSum {
         let mut total = self.block;
         for level in 0..32 {

@@ -30,6 +30,7 @@ impl TileBuffer {
     }
 
     /// The pixels of image row `y`, from the rectangle's first column on.
+    #[inline]
     pub fn row_mut(&mut self, y: u32) -> &mut [PixelSum] {
         let width = self.bounds.width() as usize;
         let start = (y - self.bounds.y0) as usize * width;

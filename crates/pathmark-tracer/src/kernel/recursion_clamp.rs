@@ -1,17 +1,18 @@
 //! Report B's clamp: the radiance that each recursion returns is cut at a limit, 1 in the report, so that no sample is
 //! brighter than white. The clamp is biased, and more samples do not remove the bias.
 //!
-//! This kernel does without the recursion. A ray with throughput T contributes at most T times the limit to the sample.
+//! This code does without the recursion. A ray with throughput T contributes at most T times the limit to the sample.
 //! So each vertex gives the sample an upper bound: the radiance collected before the vertex plus that contribution. The
 //! sample is the least of these bounds and of all collected radiance.
 
-use super::{Counts, Inspector, Kernel};
+use super::inspect::Inspector;
+use super::render::Counts;
+use super::scalar::Samples;
 use crate::estimator::Probe;
-use crate::film::{Piece, SampleSum, TileBuffer};
 use crate::math::{Ray, Rgb};
 use crate::scene::{Hit, Tests};
 
-/// The kernel. It inspects samples, which is slow but fast enough for a demonstration.
+/// Clamped samples. It inspects samples, which is slow but fast enough for a demonstration.
 pub(super) struct RecursionClamp {
     pub(super) inspector: Inspector,
     /// See [`Clamp::limit`](super::Clamp::limit).
@@ -48,27 +49,13 @@ impl Probe for Clamped<'_> {
     }
 }
 
-impl Kernel for RecursionClamp {
-    fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
-        let mut counts = Counts::default();
-        let mut sum = SampleSum::default();
-        for y in piece.bounds.y0..piece.bounds.y1 {
-            for (x, pixel) in (piece.bounds.x0..piece.bounds.x1).zip(out.row_mut(y)) {
-                sum.clear();
-                for sample in piece.samples.clone() {
-                    let least = Rgb::WHITE * f64::INFINITY;
-                    let mut clamp = Clamped { counts: &mut counts, limit: self.limit, collected: Rgb::BLACK, least };
-                    let whole = self.inspector.estimate(x, y, sample, &mut clamp);
-                    let clamped = lesser(clamp.collected, clamp.least);
-                    counts.paths += 1;
-                    let is_valid = whole.is_valid_radiance() && clamped.is_valid_radiance();
-                    counts.invalid += u64::from(!is_valid);
-                    sum.add(if is_valid { clamped } else { Rgb::BLACK });
-                }
-                *pixel = sum.total();
-            }
-        }
-        counts
+impl Samples for RecursionClamp {
+    fn radiance(&self, x: u32, y: u32, sample: u32, counts: &mut Counts) -> Rgb {
+        let least = Rgb::WHITE * f64::INFINITY;
+        let mut clamp = Clamped { counts, limit: self.limit, collected: Rgb::BLACK, least };
+        let whole = self.inspector.estimate(x, y, sample, &mut clamp);
+        // The clamp may hide that a sample is invalid.
+        if whole.is_valid_radiance() { lesser(clamp.collected, clamp.least) } else { whole }
     }
 }
 

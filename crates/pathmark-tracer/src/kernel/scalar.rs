@@ -1,27 +1,16 @@
 //! One path at a time, in f64: the readable kernel that every other one is measured against.
 
-use super::{Choice, Clamp, Clamped, Counts, Kernel};
+use super::clamp::{Clamp, Clamped};
+use super::options::RenderOptions;
+use super::render::{Counts, Kernel};
 use crate::effect::EffectSet;
-use crate::estimator::{Estimator, Probe, camera_ray, seen_besides};
+use crate::estimator::{Estimator, Probe, camera_ray, extra_camera_rays};
 use crate::film::{Piece, PixelSum, SampleSum, TileBuffer};
 use crate::math::Rgb;
 use crate::sampling::{SampleKey, Sampler};
 use crate::scene::{SUBPIXELS, Scene, Tests, View};
 use std::marker::PhantomData;
 use std::sync::Arc;
-
-/// The kernel for one estimator, sampler and effect profile.
-pub(super) struct Scalar<E, S, X> {
-    scene: Arc<Scene>,
-    view: View,
-    width: u32,
-    seed: u64,
-    subpixel_limit: Option<f64>,
-    camera_rays: u16,
-    estimator: E,
-    sampler: S,
-    profile: PhantomData<X>,
-}
 
 impl Probe for Counts {
     #[inline(always)]
@@ -38,33 +27,71 @@ impl Probe for Counts {
     }
 }
 
-impl<E: Estimator, S: Sampler, X: EffectSet> Scalar<E, S, X> {
-    pub(super) fn new(scene: Arc<Scene>, choice: &Choice, estimator: E, sampler: S) -> Self {
+/// A source of samples: the radiance of each, and the counts of its rays.
+pub(super) trait Samples: Send + Sync {
+    /// The radiance of a sample of the pixel in column `x` of row `y`, as it is estimated, valid or not.
+    fn radiance(&self, x: u32, y: u32, sample: u32, counts: &mut Counts) -> Rgb;
+}
+
+/// Samples of an estimator that is compiled for one sampler and one effect profile.
+pub(super) struct Compiled<E, S, X> {
+    scene: Arc<Scene>,
+    view: View,
+    width: u32,
+    seed: u64,
+    camera_rays: u16,
+    estimator: E,
+    sampler: S,
+    profile: PhantomData<X>,
+}
+
+impl<E, S, X> Compiled<E, S, X> {
+    /// The samples of an image of a prepared scene.
+    pub(super) fn new(scene: Arc<Scene>, options: &RenderOptions, estimator: E, sampler: S) -> Self {
         Self {
-            view: choice.view(&scene),
+            view: options.view(&scene),
             scene,
-            width: choice.width,
-            seed: choice.seed,
-            subpixel_limit: choice
-                .clamp
-                .filter(|clamp| clamp.what == Clamped::Subpixel)
-                .map(|clamp: Clamp| clamp.limit),
-            camera_rays: choice.options.camera_rays(),
+            width: options.width,
+            seed: options.seed,
+            camera_rays: options.options.camera_rays(),
             estimator,
             sampler,
             profile: PhantomData,
         }
     }
+}
 
-    /// The contribution of a sample to its pixel.
+impl<E: Estimator, S: Sampler, X: EffectSet> Samples for Compiled<E, S, X> {
     #[inline(always)]
-    fn sample(&self, x: u32, y: u32, sample: u32, counts: &mut Counts) -> Rgb {
+    fn radiance(&self, x: u32, y: u32, sample: u32, counts: &mut Counts) -> Rgb {
         let key = SampleKey { seed: self.seed, pixel: y * self.width + x, sample };
         let ray = camera_ray::<S, X, Counts>(&self.view, [x, y], key, 0, &self.sampler, counts);
         let mut radiance = self.estimator.sample::<S, X, Counts>(&self.scene, ray, key, &self.sampler, counts);
         if self.camera_rays > 1 {
-            radiance += seen_besides(&self.scene, &self.view, [x, y], key, self.camera_rays, &self.sampler, counts);
+            radiance +=
+                extra_camera_rays(&self.scene, &self.view, [x, y], key, self.camera_rays, &self.sampler, counts);
         }
+        radiance
+    }
+}
+
+/// The kernel: sums of samples over pixels.
+pub(super) struct Scalar<R> {
+    samples: R,
+    subpixel_limit: Option<f64>,
+}
+
+impl<R: Samples> Scalar<R> {
+    /// The kernel of these samples.
+    pub(super) fn new(samples: R, options: &RenderOptions) -> Self {
+        let clamp = options.clamp.filter(|clamp| clamp.what == Clamped::Subpixel);
+        Self { samples, subpixel_limit: clamp.map(|clamp: Clamp| clamp.limit) }
+    }
+
+    /// The contribution of a sample to its pixel.
+    #[inline(always)]
+    fn sample(&self, x: u32, y: u32, sample: u32, counts: &mut Counts) -> Rgb {
+        let radiance = self.samples.radiance(x, y, sample, counts);
         counts.paths += 1;
         if radiance.is_valid_radiance() {
             return radiance;
@@ -93,7 +120,7 @@ impl<E: Estimator, S: Sampler, X: EffectSet> Scalar<E, S, X> {
     }
 }
 
-impl<E: Estimator, S: Sampler, X: EffectSet> Kernel for Scalar<E, S, X> {
+impl<R: Samples> Kernel for Scalar<R> {
     fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
         let mut counts = Counts::default();
         let mut sum = SampleSum::default();

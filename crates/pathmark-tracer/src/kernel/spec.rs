@@ -1,7 +1,6 @@
 //! Specification of a render by names: its *what*.
 
-use super::LANES;
-use crate::simd::Precision;
+use crate::math::Precision;
 use serde::{Deserialize, Serialize};
 
 /// Specification of a kernel: the *what* of a render.
@@ -62,7 +61,7 @@ impl Default for Spec {
             seed: 1,
             estimator: "smallpt".to_string(),
             sampler: "independent".to_string(),
-            kernel: LANES.to_string(),
+            kernel: "lanes".to_string(),
             simd: None,
             precision: double(),
             effects: None,

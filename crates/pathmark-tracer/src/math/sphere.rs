@@ -65,7 +65,7 @@ pub fn other_root<T: Real>(f: Vec3<T>, d: Vec3<T>) -> T {
 /// (|centre|² - r²). No values of the radius's size cancel. So a wall that is a sphere of radius 1e5 does not shake in
 /// single precision, as long as the scene is near the origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Curved<T = f64> {
+pub struct SphereByCurvature<T = f64> {
     /// -k times the centre.
     pub normal: Vec3<T>,
     /// k, the inverse of the radius.
@@ -74,7 +74,7 @@ pub struct Curved<T = f64> {
     pub offset: T,
 }
 
-impl Curved {
+impl SphereByCurvature {
     /// The sphere with that centre and radius.
     pub fn of(center: Vec3, radius: f64) -> Self {
         let curvature = 1.0 / radius;
@@ -83,24 +83,24 @@ impl Curved {
     }
 }
 
-/// The outward normal at a point of a [`Curved`] sphere, from its normal and curvature. Its length is 1 up to rounding.
+/// The outward normal at a point of a [`SphereByCurvature`] sphere, from its normal and curvature. Its length is 1 up to rounding.
 /// With curvature 0 it is the plane's normal.
 #[inline(always)]
 pub fn curved_normal<T: Real>(normal: Vec3<T>, curvature: T, point: Vec3<T>) -> Vec3<T> {
     point.times_plus(curvature, normal)
 }
 
-/// b and c of the quadratic k t² + 2 b t + c = 0 of a ray and a [`Curved`] sphere, for a direction of length 1. `square` is |o|² of the ray's origin o,
+/// b and c of the quadratic k t² + 2 b t + c = 0 of a ray and a [`SphereByCurvature`] sphere, for a direction of length 1. `square` is |o|² of the ray's origin o,
 /// `along` o·d.
 #[inline(always)]
-pub fn curved_quadratic<T: Real>(sphere: &Curved<T>, o: Vec3<T>, d: Vec3<T>, square: T, along: T) -> (T, T) {
-    let Curved { normal, curvature, offset } = *sphere;
+pub fn curved_quadratic<T: Real>(sphere: &SphereByCurvature<T>, o: Vec3<T>, d: Vec3<T>, square: T, along: T) -> (T, T) {
+    let SphereByCurvature { normal, curvature, offset } = *sphere;
     let twice = T::splat(2.0);
     let c = twice.times_plus(dot(normal, o), curvature.times_plus(square, offset));
     (curvature.times_plus(along, dot(normal, d)), c)
 }
 
-/// [`first_root`] of a [`Curved`] sphere by its [`curved_quadratic`], whose leading coefficient is the curvature.
+/// [`first_root`] of a [`SphereByCurvature`] sphere by its [`curved_quadratic`], whose leading coefficient is the curvature.
 #[inline(always)]
 pub fn first_root_curved<T: Real>(k: T, b: T, c: T) -> T {
     let q = b + b.times_plus(b, -(k * c)).sqrt().copysign(b);
@@ -139,8 +139,9 @@ mod tests {
     }
 
     fn curved_root_by<T: Real>(root: fn(T, T, T) -> T, center: Vec3, radius: f64, origin: Vec3, direction: Vec3) -> T {
-        let Curved { normal, curvature, offset } = Curved::of(center, radius);
-        let sphere = Curved { normal: Vec3::splat(normal), curvature: T::splat(curvature), offset: T::splat(offset) };
+        let SphereByCurvature { normal, curvature, offset } = SphereByCurvature::of(center, radius);
+        let sphere =
+            SphereByCurvature { normal: Vec3::splat(normal), curvature: T::splat(curvature), offset: T::splat(offset) };
         let (o, d) = (Vec3::splat(origin), Vec3::splat(direction));
         let (b, c) = curved_quadratic(&sphere, o, d, dot(o, o), dot(o, d));
         root(sphere.curvature, b, c)

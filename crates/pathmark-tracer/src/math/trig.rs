@@ -3,7 +3,7 @@
 use super::Real;
 
 /// Coefficients of sin(x)/x in x², from the Taylor series: on |x| <= π/4 the first omitted term is below 1e-19.
-pub(crate) const SIN: [f64; 9] = [
+pub const SIN: [f64; 9] = [
     1.0,
     -1.0 / 6.0,
     1.0 / 120.0,
@@ -16,7 +16,7 @@ pub(crate) const SIN: [f64; 9] = [
 ];
 
 /// Coefficients of cos(x) in x², likewise.
-pub(crate) const COS: [f64; 9] = [
+pub const COS: [f64; 9] = [
     1.0,
     -1.0 / 2.0,
     1.0 / 24.0,

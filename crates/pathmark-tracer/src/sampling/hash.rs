@@ -19,7 +19,7 @@ pub struct Hash;
 
 /// A word, and the same word with its halves swapped.
 #[inline(always)]
-pub(super) fn both<B: Bits>(word: B) -> [B; 2] {
+pub fn both<B: Bits>(word: B) -> [B; 2] {
     [word, word.up::<32>() | word.down::<32>()]
 }
 

@@ -36,7 +36,7 @@ pub fn mix<B: Bits>(x: B) -> B {
 
 /// The hash of seed, pixel and sample that all addresses of a sample share.
 #[inline(always)]
-pub(super) fn path<B: Bits>(seed: u64, place: B) -> B {
+pub fn path<B: Bits>(seed: u64, place: B) -> B {
     mix(mix(place) ^ B::splat(mix(seed)))
 }
 
@@ -52,7 +52,7 @@ fn output<B: Bits>(state: B) -> B {
 /// The first two 64-bit numbers of a PCG32 with this state and stream, as `rand_pcg` returns them, in every lane. (No
 /// closures: the compiler may leave them outside the function that enables the SIMD instructions.)
 #[inline(always)]
-pub(super) fn pcg32<B: Bits>(state: B, stream: B) -> [B; 2] {
+pub fn pcg32<B: Bits>(state: B, stream: B) -> [B; 2] {
     let multiplier = B::splat(0x5851_F42D_4C95_7F2D);
     let increment = stream.up::<1>() | B::splat(1);
     let first = state.plus(increment).times(multiplier).plus(increment);

@@ -4,27 +4,28 @@
 //! draws more numbers leaves all others unchanged. `pathmark list samplers` prints the table; `--sampler independent`
 //! chooses.
 
-mod hash;
-mod independent;
-mod lanes;
+#[doc(hidden)]
+pub mod hash;
+#[doc(hidden)]
+pub mod independent;
 mod libc_rand;
 mod locked;
 mod owen;
 mod per_thread;
-mod sobol;
-mod sobol_burley;
+#[doc(hidden)]
+pub mod sobol;
+#[doc(hidden)]
+pub mod sobol_burley;
 mod stratified;
 mod warp;
 
 pub use crate::math::unit;
 pub use hash::Hash;
 pub use independent::{Independent, mix};
-pub use lanes::{InLanes, PathWords};
 pub use libc_rand::LibcRand;
 pub use locked::Locked;
 pub use per_thread::PerThread;
-pub use sobol::Sobol;
-pub(crate) use sobol::{ORDERS, SUBPIXEL, each_third};
+pub use sobol::{ORDERS, SUBPIXEL, Sobol, each_third};
 pub use sobol_burley::SobolBurley;
 pub use stratified::Stratified;
 pub use warp::{UNIFORM_SPHERE_DENSITY, concentric_disk, cosine_hemisphere, tent, uniform_sphere};
@@ -100,14 +101,6 @@ impl Sampler for Box<dyn Sampler> {
     }
 }
 
-/// A function that is generic over samplers. Through it a name on the command line becomes a type in a kernel.
-pub trait SamplerVisitor {
-    /// The result.
-    type Output;
-    /// Called with the named sampler.
-    fn visit<S: Sampler + 'static>(self, sampler: S) -> Self::Output;
-}
-
 /// One line of the table of samplers.
 pub struct Entry {
     /// Its name on the command line, in CSV and TOML.
@@ -136,30 +129,13 @@ macro_rules! samplers {
             $(Entry { name: $stateful, about: $stateful_about, deterministic: false, checksum: None },)*
         ];
 
-        /// The samplers that spread a pixel's samples, as one type: kernels are compiled once for all of them. They
-        /// branch on the sampler at each pair, which costs little compared with computing the pair.
-        #[derive(Debug, Clone, Copy)]
-        enum Spread {
-            $($Spread($Spread),)*
-        }
-
-        impl Sampler for Spread {
-            #[inline(always)]
-            fn pair(&self, at: Address) -> [f64; 2] {
-                match self {
-                    $(Self::$Spread(sampler) => sampler.pair(at),)*
-                }
+        /// The deterministic sampler of that name; `None` if there is none.
+        pub fn keyed_sampler(name: &str) -> Option<Box<dyn Sampler>> {
+            match name {
+                $($keyed => Some(Box::new($Keyed)),)*
+                $($spread => Some(Box::new($Spread)),)*
+                _ => None,
             }
-        }
-
-        /// Calls the visitor with the deterministic sampler of that name; `None` if there is none.
-        pub fn with_keyed_sampler<V: SamplerVisitor>(name: &str, visitor: V) -> Option<V::Output> {
-            let sampler = match name {
-                $($keyed => return Some(visitor.visit($Keyed)),)*
-                $($spread => Spread::$Spread($Spread),)*
-                _ => return None,
-            };
-            Some(visitor.visit(sampler))
         }
 
         /// Whether the sampler of that name spreads a pixel's samples more evenly than independent random numbers.
@@ -167,8 +143,7 @@ macro_rules! samplers {
             [$($spread),*].contains(&name)
         }
 
-        /// Creates the stateful sampler of that name for an image's seed; `None` if there is none. Kernels are compiled
-        /// once for all of them: a virtual call costs little compared with a lock.
+        /// Creates the stateful sampler of that name for an image's seed; `None` if there is none.
         pub fn stateful_sampler(name: &str, seed: u64) -> Option<Box<dyn Sampler>> {
             match name {
                 $($stateful => Some(Box::new($new_stateful(seed))),)*
@@ -193,18 +168,6 @@ samplers! {
         "locked", "one PCG32 behind a lock; not deterministic" => Locked::new;
         "per-thread", "a PCG32 for each thread; not deterministic" => PerThread::new;
     }
-}
-
-/// The deterministic sampler of that name, boxed as a trait object; `None` if there is none.
-pub fn keyed_sampler(name: &str) -> Option<Box<dyn Sampler>> {
-    struct Boxed;
-    impl SamplerVisitor for Boxed {
-        type Output = Box<dyn Sampler>;
-        fn visit<S: Sampler + 'static>(self, sampler: S) -> Self::Output {
-            Box::new(sampler)
-        }
-    }
-    with_keyed_sampler(name, Boxed)
 }
 
 /// Whether the sampler of that name returns the same numbers in each run.

@@ -44,7 +44,7 @@ const fn times_omega(elements: u32) -> u32 {
 const LOWER: u32 = 0x5555_5555;
 
 /// Both bits of the elements `place`, `place + 3`, ...
-pub(crate) const fn each_third(place: u32) -> u32 {
+pub const fn each_third(place: u32) -> u32 {
     let (mut mask, mut bit) = (0, 2 * place);
     while bit < u32::BITS {
         mask |= 3 << bit;
@@ -91,7 +91,7 @@ fn pascal_to_omega(index: u32) -> u32 {
 
 /// The coefficients of the fifth dimension's first digit, as one mask for each bit of the products. They follow the
 /// recurrence of x² + ω²x + 1, a polynomial without roots in the field, and have period five.
-pub(crate) const SUBPIXEL: [u32; 2] = {
+pub const SUBPIXEL: [u32; 2] = {
     let coefficients = [1, 2, 0, 2, 1];
     let (mut masks, mut place) = ([0; 2], 0);
     while place < 16 {
@@ -109,7 +109,7 @@ pub(crate) const SUBPIXEL: [u32; 2] = {
 };
 
 /// The 24 orders of four samples, two bits for each sample.
-pub(crate) const ORDERS: [u8; 24] = {
+pub const ORDERS: [u8; 24] = {
     let mut orders = [0; 24];
     let (mut place, mut code) = (0, 0);
     while place < orders.len() {
@@ -136,14 +136,14 @@ fn leading(sample: u32, [a, b]: [u64; 2]) -> u32 {
 
 /// The hash of seed and pixel that all random numbers of a pixel share.
 #[inline(always)]
-pub(super) fn pixel<B: Bits>(seed: u64, pixel: B) -> B {
+pub fn pixel<B: Bits>(seed: u64, pixel: B) -> B {
     mix(mix(pixel) ^ B::splat(mix(seed)))
 }
 
 /// A sample's positions in the order that the leading uses share: for the film, and for the direction or light at the
 /// first vertex.
 #[inline(always)]
-pub(super) fn joined(pixel: u64, sample: u32) -> [u32; 2] {
+pub fn joined(pixel: u64, sample: u32) -> [u32; 2] {
     // No dimension is this large, so no other key is made from these values.
     let place = leading(sample, [mix(pixel ^ u64::MAX), mix(pixel ^ (u64::MAX - 1))]);
     [place, pascal_to_omega(place)]
@@ -151,13 +151,13 @@ pub(super) fn joined(pixel: u64, sample: u32) -> [u32; 2] {
 
 /// A sample's position in the use's own order.
 #[inline(always)]
-pub(super) fn own_place<B: Bits>(key: B, sample: B) -> B {
+pub fn own_place<B: Bits>(key: B, sample: B) -> B {
     shuffle(sample, [mix(key), mix(key ^ B::splat(1))])
 }
 
 /// The two numbers at a position of the sequence, scrambled for a use, as 64-bit fractions.
 #[inline(always)]
-pub(super) fn fractions<B: Bits>(key: B, place: B) -> [B; 2] {
+pub fn fractions<B: Bits>(key: B, place: B) -> [B; 2] {
     let first = [mix(key ^ B::splat(2)), mix(key ^ B::splat(3))];
     let second = [mix(key ^ B::splat(4)), mix(key ^ B::splat(5))];
     [scramble(place, first).reversed(), scramble(pascal(place), second).reversed()]

@@ -26,19 +26,19 @@ fn scramble<B: Bits>(digits: B, seed: B) -> B {
 
 /// A sample's index with its first digit in the lowest of 32 bits. It is constant along a path.
 #[inline(always)]
-pub(super) fn digits<B: Bits>(sample: B) -> B {
+pub fn digits<B: Bits>(sample: B) -> B {
     sample.reversed().down::<32>()
 }
 
 /// The position in the sequence of a sample with these digits, in the use's own order.
 #[inline(always)]
-pub(super) fn own_place<B: Bits>(key: B, digits: B) -> B {
+pub fn own_place<B: Bits>(key: B, digits: B) -> B {
     scramble(digits, mix(key ^ B::splat(1))).up::<32>().reversed()
 }
 
 /// The two numbers at a position of the sequence, scrambled for a use, as 64-bit fractions.
 #[inline(always)]
-pub(super) fn fractions<B: Bits>(key: B, place: B) -> [B; 2] {
+pub fn fractions<B: Bits>(key: B, place: B) -> [B; 2] {
     [scramble(place, key).reversed(), scramble(pascal(place), key.down::<32>()).reversed()]
 }
 

@@ -5,19 +5,19 @@
 
 use super::Scene;
 use super::reader::{estimator_of_text, scene_from_text};
-use super::source::{Folder, OwnScene, SCENES, Source, source};
+use super::source::{CustomScene, Folder, SCENES, Source, source};
 use crate::error::Result;
 use std::path::PathBuf;
 
 /// The embedded scenes, and the scenes that a user's program adds.
 #[derive(Debug, Clone, Default)]
 pub struct Library {
-    own: Vec<OwnScene>,
+    own: Vec<CustomScene>,
 }
 
 impl Library {
     /// Adds a scene.
-    pub fn add(&mut self, scene: OwnScene) {
+    pub fn add(&mut self, scene: CustomScene) {
         self.own.push(scene);
     }
 

@@ -25,10 +25,9 @@ pub use feature::{
 pub use fog::Fog;
 pub use generator::GENERATORS;
 pub use hierarchy::{
-    ACCELERATORS, Bounds, Child, Content, Entry as Accelerator, Gathered, Hierarchy, Scan, Tests, TreeStore,
-    accelerator, padding,
+    ACCELERATORS, Bounds, DEEPEST, Entry as Accelerator, Faces, Hierarchy, Node, Scan, Slabs, Tests, accelerator,
+    padding,
 };
-pub(crate) use hierarchy::{DEEPEST, Slabs};
 pub use library::{Library, load};
 pub use light::{Aim, Lights, one_minus_cos};
 pub use light::{AnyTarget, NO_LIGHT, TriangleTarget, per_steradian, point_of, towards_cap};
@@ -38,10 +37,9 @@ pub use profile::{
     SmallptEffects, SurfaceEffects, effect_names, with_profile,
 };
 pub use shape::{Nearest, PRIMITIVES, Plane, Primitive, Primitives, SHAPES, Sphere, Triangle, nearness};
-pub use source::{OwnScene, SCENES};
+pub use source::{CustomScene, SCENES};
 
 use crate::effect::{EffectSet, Effects};
-use crate::error::Result;
 use crate::material::Material;
 use crate::math::{Frame, Ray, Rgb, Vec3, dot};
 use std::path::PathBuf;
@@ -72,7 +70,7 @@ impl Object {
 
 /// The primitive on which a ray starts, and the side. Such a ray needs no epsilon to miss its own start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Standpoint {
+pub struct SurfaceOrigin {
     /// Number of the primitive.
     pub primitive: u32,
     /// Whether the ray leaves to its inside.
@@ -176,20 +174,26 @@ impl Scene {
     /// Returns the first primitive of the kinds in `X` along the ray; among equally near ones, the one with the lowest
     /// number. `from` is the ray's start, if it is on a primitive.
     #[inline(always)]
-    pub fn intersect<X: EffectSet>(&self, ray: &Ray, from: Option<Standpoint>, tests: &mut Tests) -> Option<Hit> {
+    pub fn intersect<X: EffectSet>(&self, ray: &Ray, from: Option<SurfaceOrigin>, tests: &mut Tests) -> Option<Hit> {
         self.first::<X>(ray, from, f64::INFINITY, tests)
     }
 
     /// Returns the first primitive of any kind along the ray. This crate compiles it, so it is equally fast when an
     /// unoptimised crate calls it.
-    pub fn first_of_any(&self, ray: &Ray, from: Option<Standpoint>) -> Option<Hit> {
+    pub fn first_of_any(&self, ray: &Ray, from: Option<SurfaceOrigin>) -> Option<Hit> {
         self.intersect::<AllEffects>(ray, from, &mut Tests::default())
     }
 
     /// Like [`Self::intersect`], for hits nearer than `limit`. With an epsilon, the search starts that far along the
     /// ray and without `from`. It then finds the same hit as a program that drops hits nearer than epsilon.
     #[inline(always)]
-    fn first<X: EffectSet>(&self, ray: &Ray, from: Option<Standpoint>, limit: f64, tests: &mut Tests) -> Option<Hit> {
+    fn first<X: EffectSet>(
+        &self,
+        ray: &Ray,
+        from: Option<SurfaceOrigin>,
+        limit: f64,
+        tests: &mut Tests,
+    ) -> Option<Hit> {
         let (mut ray, mut from, mut limit) = (*ray, from, limit);
         let epsilon = self.epsilon.filter(|_| X::EFFECTS.cover(EPSILON));
         if let Some(epsilon) = epsilon {
@@ -204,7 +208,7 @@ impl Scene {
     fn first_exactly<X: EffectSet>(
         &self,
         ray: &Ray,
-        from: Option<Standpoint>,
+        from: Option<SurfaceOrigin>,
         limit: f64,
         tests: &mut Tests,
     ) -> Option<Hit> {
@@ -232,7 +236,7 @@ impl Scene {
 
     /// Returns the distance and the number of the first primitive along a ray whose coordinates have `digits` binary
     /// digits. [`Scene::intersect`] finds the same for double precision, faster.
-    pub fn nearest(&self, ray: &Ray, from: Option<Standpoint>, digits: u32, tests: &mut Tests) -> Nearest {
+    pub fn nearest(&self, ray: &Ray, from: Option<SurfaceOrigin>, digits: u32, tests: &mut Tests) -> Nearest {
         let hierarchy = self.hierarchy.as_ref();
         if self.primitives.triangles.is_empty() {
             return self.primitives.nearest::<AllEffects>(hierarchy, ray, from, f64::INFINITY, tests);
@@ -270,12 +274,18 @@ impl Scene {
 
     /// Whether a primitive of the kinds in `X` is on the ray nearer than `limit`.
     #[inline(always)]
-    pub fn is_blocked<X: EffectSet>(&self, ray: &Ray, from: Option<Standpoint>, limit: f64, tests: &mut Tests) -> bool {
+    pub fn is_blocked<X: EffectSet>(
+        &self,
+        ray: &Ray,
+        from: Option<SurfaceOrigin>,
+        limit: f64,
+        tests: &mut Tests,
+    ) -> bool {
         self.first::<X>(ray, from, limit, tests).is_some()
     }
 
     /// Whether any primitive is on the ray nearer than `limit`; this crate compiles it, like [`Self::first_of_any`].
-    pub fn is_blocked_by_any(&self, ray: &Ray, from: Option<Standpoint>, limit: f64) -> bool {
+    pub fn is_blocked_by_any(&self, ray: &Ray, from: Option<SurfaceOrigin>, limit: f64) -> bool {
         self.is_blocked::<AllEffects>(ray, from, limit, &mut Tests::default())
     }
 
@@ -319,26 +329,23 @@ impl Scene {
     }
 
     /// Adds the lights for next-event estimation, as paths from that view can reach them.
-    pub(crate) fn add_lights(&mut self, view: &View) {
+    pub fn add_lights(&mut self, view: &View) {
         self.lights = Some(self.lights_for(view));
     }
 
     /// Returns the lights for next-event estimation, as paths from that view can reach them.
-    pub(crate) fn lights_for(&self, view: &View) -> Lights {
+    pub fn lights_for(&self, view: &View) -> Lights {
         Lights::of(self, &view.origins())
     }
 
     /// Returns the scene with the accelerator of that name; `None` if that builds no hierarchy.
     pub fn accelerated(&self, name: &str) -> Option<Self> {
-        // Without a store nothing can fail.
-        let hierarchy = self.hierarchy_by(name, None).ok()??;
+        let hierarchy = self.hierarchy_by(name)?;
         Some(Self { hierarchy: Some(hierarchy), ..self.clone() })
     }
 
-    /// Returns the hierarchy of that accelerator over its primitives, from the store if it holds it; `None` if the
-    /// accelerator builds none.
-    pub(crate) fn hierarchy_by(&self, name: &str, store: Option<&dyn TreeStore>) -> Result<Option<Hierarchy>> {
-        let accelerator = accelerator(Some(name), 0, Scan::OneByOne);
-        accelerator.map_or(Ok(None), |accelerator| accelerator.build(self.primitives.bounds(), store))
+    /// Returns the hierarchy of that accelerator over its primitives; `None` if the accelerator builds none.
+    pub fn hierarchy_by(&self, name: &str) -> Option<Hierarchy> {
+        accelerator(Some(name), 0, Scan::OneByOne)?.build(self.primitives.bounds())
     }
 }

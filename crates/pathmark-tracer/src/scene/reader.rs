@@ -25,7 +25,7 @@
 
 use super::generator::{Generator, Made};
 use super::shape::{AnyShape, Primitives};
-use super::source::{Files, Folder, OwnScene, Source, source};
+use super::source::{CustomScene, Files, Folder, Source, source};
 use super::{Camera, Fog, Object, PointLight, Scene, USUAL_ESTIMATOR};
 use crate::digest::Fingerprint;
 use crate::error::{Error, InputError, Result};
@@ -97,7 +97,7 @@ const DEEPEST_BASE: usize = 8;
 
 /// Reads a scene. `number` is for its generator, with its text as given. `own` are scenes that may be its base, besides
 /// the embedded ones.
-pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: &[OwnScene]) -> Result<Scene> {
+pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: &[CustomScene]) -> Result<Scene> {
     let source = &Rc::new(source);
     let (mut draft, about) = draft(source, 0, own)?;
     let mut name = source.name.clone();
@@ -157,7 +157,7 @@ pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: 
 }
 
 /// Returns [`Scene::estimator`] without reading any more of the scene.
-pub(super) fn estimator_of_text(source: Source, own: &[OwnScene]) -> Result<String> {
+pub(super) fn estimator_of_text(source: Source, own: &[CustomScene]) -> Result<String> {
     let (draft, _) = draft(&Rc::new(source), 0, own)?;
     Ok(draft.estimator.unwrap_or_else(|| USUAL_ESTIMATOR.to_string()))
 }
@@ -209,7 +209,7 @@ fn missing(source: &Source, field: &str, problem: &str) -> Error {
 }
 
 /// Applies a file's entries to the draft of its base; returns the draft and the file's `about`.
-fn draft(source: &Rc<Source>, depth: usize, own: &[OwnScene]) -> Result<(Draft, String)> {
+fn draft(source: &Rc<Source>, depth: usize, own: &[CustomScene]) -> Result<(Draft, String)> {
     let mut file: SceneFile = parse(&source.text, &source.file)?;
     if let Some(generator) = &mut file.generator {
         let (field, number) = (generator.field(), generator.number());
@@ -284,7 +284,7 @@ fn draft(source: &Rc<Source>, depth: usize, own: &[OwnScene]) -> Result<(Draft, 
     Ok((draft, file.about))
 }
 
-fn base_of(from: &Source, base: &str, depth: usize, own: &[OwnScene]) -> Result<Draft> {
+fn base_of(from: &Source, base: &str, depth: usize, own: &[CustomScene]) -> Result<Draft> {
     let error =
         |problem: String| InputError::new("base", base, problem).in_file(&from.file, locate(&from.text, "base", base));
     if depth == DEEPEST_BASE {

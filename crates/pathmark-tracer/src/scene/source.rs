@@ -11,7 +11,7 @@ pub const SCENES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/scenes.r
 
 /// A scene that a user's program provides.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct OwnScene {
+pub struct CustomScene {
     /// Its name.
     pub name: String,
     /// Its definition in TOML.
@@ -101,7 +101,7 @@ pub(super) struct Source {
 
 /// Returns the scene of that name, embedded or in `own`, or the file at that path. A name that ends in `.toml` or
 /// contains a directory is a path. Relative paths start at `folder`.
-pub(super) fn source(name_or_path: &str, folder: &Folder, own: &[OwnScene]) -> Result<Source> {
+pub(super) fn source(name_or_path: &str, folder: &Folder, own: &[CustomScene]) -> Result<Source> {
     let path = Path::new(name_or_path);
     if path.extension().is_some_and(|extension| extension == "toml") || path.components().count() > 1 {
         let path = match folder {

@@ -1,17 +1,18 @@
 //! Inspection of single samples. The estimator's own code runs behind a pointer, with every effect compiled in. An
 //! effect that a scene does not need changes no bit, so an inspected sample equals the image's. This holds in f64. In
-//! f32 only a sample's value is available ([`super::one_sample`]).
+//! f32 only a sample's value is available ([`one_sample`](super::one_sample)).
 
 mod by_bounce;
 mod path_log;
 
-use super::{Choice, prepared};
+use super::options::RenderOptions;
+use super::render::Counts;
+use super::scalar::Samples;
 use crate::error::{InputError, Result};
-use crate::estimator::{AnyEstimator, Probe, camera_ray, seen_besides};
-use crate::math::Rgb;
+use crate::estimator::{AnyEstimator, Probe, camera_ray, extra_camera_rays};
+use crate::math::{Precision, Rgb};
 use crate::sampling::{SAMPLERS, SampleKey, Sampler, keyed_sampler};
 use crate::scene::{AllEffects, Scene, View};
-use crate::simd::Precision;
 pub use by_bounce::{BounceRow, LightByBounce};
 pub use path_log::{Event, PathLog};
 use std::sync::Arc;
@@ -28,26 +29,36 @@ pub struct Inspector {
 }
 
 impl Inspector {
-    /// An inspector for the samples of an image.
-    pub fn new(scene: &Arc<Scene>, choice: &Choice) -> Result<Self> {
-        if choice.precision() != Precision::F64 {
-            let name = choice.precision().name();
+    /// An inspector for the samples of an image, whose kernel renders them in f64.
+    pub fn new(scene: &Arc<Scene>, options: &RenderOptions) -> Result<Self> {
+        if options.precision() != Precision::F64 {
+            let name = options.precision().name();
             let problem = "is rendered by SIMD lanes only, which cannot report the events of a path";
             return Err(InputError::new("precision", name, problem).allowed(Precision::F64.name()).into());
         }
-        let Some(sampler) = keyed_sampler(choice.sampler.name) else {
+        Self::of_f64(scene, options)
+    }
+
+    /// An inspector for the same samples in f64, whatever the kernel's precision is.
+    pub(super) fn of_f64(scene: &Arc<Scene>, options: &RenderOptions) -> Result<Self> {
+        let Some(sampler) = keyed_sampler(options.sampler.name) else {
             let problem = "returns different numbers in each run, so no sample can be repeated";
             let names: Vec<&str> =
                 SAMPLERS.iter().filter(|entry| entry.deterministic).map(|entry| entry.name).collect();
-            return Err(InputError::new("sampler", choice.sampler.name, problem).allowed(names.join(", ")).into());
+            return Err(InputError::new("sampler", options.sampler.name, problem).allowed(names.join(", ")).into());
         };
+        Self::with(options.prepared(scene), options, sampler)
+    }
+
+    /// An inspector of a prepared scene, with a given sampler.
+    pub(super) fn with(scene: Arc<Scene>, options: &RenderOptions, sampler: Box<dyn Sampler>) -> Result<Self> {
         Ok(Self {
-            scene: prepared(scene, choice)?,
-            view: choice.view(scene),
-            width: choice.width,
-            seed: choice.seed,
-            camera_rays: choice.options.camera_rays(),
-            estimator: choice.any_estimator()?,
+            view: options.view(&scene),
+            scene,
+            width: options.width,
+            seed: options.seed,
+            camera_rays: options.options.camera_rays(),
+            estimator: options.any_estimator()?,
             sampler,
         })
     }
@@ -68,6 +79,12 @@ impl Inspector {
         if self.camera_rays == 1 {
             return radiance;
         }
-        radiance + seen_besides(&self.scene, &self.view, [x, y], key, self.camera_rays, &*self.sampler, probe)
+        radiance + extra_camera_rays(&self.scene, &self.view, [x, y], key, self.camera_rays, &*self.sampler, probe)
+    }
+}
+
+impl Samples for Inspector {
+    fn radiance(&self, x: u32, y: u32, sample: u32, counts: &mut Counts) -> Rgb {
+        self.estimate(x, y, sample, counts)
     }
 }

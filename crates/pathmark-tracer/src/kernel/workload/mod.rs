@@ -12,7 +12,7 @@ mod costs;
 mod mandelbrot;
 mod sum;
 
-use super::{Counts, Kernel};
+use super::render::{Counts, Kernel};
 use crate::film::{Piece, SampleSum, TileBuffer};
 use crate::math::Rgb;
 use std::fmt;
@@ -91,7 +91,7 @@ impl fmt::Debug for Entry {
 
 impl Entry {
     /// A user-defined workload.
-    pub fn own(name: &'static str, workload: impl Workload) -> Self {
+    pub fn custom(name: &'static str, workload: impl Workload) -> Self {
         Self { name, workload: Made::Own(Arc::new(workload)) }
     }
 

@@ -116,10 +116,14 @@ cameras! {
 /// A camera set up for an image size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
-    pub(crate) camera: Camera,
-    pub(crate) filter: Filter,
-    pub(crate) right: Vec3,
-    pub(crate) up: Vec3,
+    /// The camera.
+    pub camera: Camera,
+    /// The pixel filter.
+    pub filter: Filter,
+    /// Across the image plane, from left to right.
+    pub right: Vec3,
+    /// Across the image plane, from bottom to top.
+    pub up: Vec3,
     width: f64,
     height: f64,
     rows: u32,

@@ -80,17 +80,18 @@ impl Bounds {
 /// Returns the largest distance outside a box at which a ray still counts as hitting it, in units of the sum of the
 /// largest coordinates of the box and of the ray's origin. Numbers have `digits` binary digits. The padding covers the
 /// rounding errors of the box test and of the tests of its primitives: at most some 30 ulps.
+#[inline]
 pub const fn padding(digits: u32) -> f64 {
     64.0 / (1_u64 << digits) as f64
 }
 
 /// The smallest and the largest coordinates of a box: an array, so that a direction's sign selects one without a
 /// branch.
-pub(crate) type Faces = [[f64; 3]; 2];
+pub type Faces = [[f64; 3]; 2];
 
 /// A ray prepared for box tests.
 #[derive(Clone, Copy)]
-pub(crate) struct Slabs {
+pub struct Slabs {
     /// The origin, moved forward and backward by its share of the padding: distances to near and far faces start there.
     near: [f64; 3],
     far: [f64; 3],
@@ -102,7 +103,8 @@ pub(crate) struct Slabs {
 
 impl Slabs {
     #[inline(always)]
-    pub(crate) fn new(ray: &Ray) -> Self {
+    /// Prepares the ray.
+    pub fn new(ray: &Ray) -> Self {
         let origin = [ray.origin.x, ray.origin.y, ray.origin.z];
         let direction = [ray.direction.x, ray.direction.y, ray.direction.z];
         let padding = padding(f64::MANTISSA_DIGITS) * origin[0].abs().max(origin[1].abs()).max(origin[2].abs());
@@ -123,7 +125,7 @@ impl Slabs {
     /// A ray along a face gives 0 times infinity, NaN, for that axis. The comparisons then keep the result of the other
     /// axes, so the box is not missed because of this one.
     #[inline(always)]
-    pub(crate) fn enter(&self, faces: &Faces, limit: f64) -> Option<f64> {
+    pub fn enter(&self, faces: &Faces, limit: f64) -> Option<f64> {
         let (mut enter, mut leave) = (0.0_f64, limit);
         for (axis, backward) in self.backward.into_iter().enumerate() {
             let first = (faces[usize::from(backward)][axis] - self.near[axis]) * self.inverse[axis];

@@ -5,26 +5,19 @@
 //! thread depends on another one's results, so the tree is the same for any number of threads.
 
 use super::bounds::Faces;
-use super::sorted::sorted;
+use super::sorted::{UNBALANCED, UNKNOWN, sorted};
 use super::{Bounds, Hierarchy, Item, Node, Split};
 use std::collections::BTreeMap;
 use std::panic::resume_unwind;
 use std::sync::{Mutex, PoisonError};
 use std::thread::{Builder, available_parallelism, scope};
 
-/// From this level on, nodes are split in the middle instead of by the rule, so that a traversal never needs more than
-/// [`DEEPEST`] places.
-pub(super) const UNBALANCED: usize = 32;
-
-/// The deepest level: halving 2^32 primitives after [`UNBALANCED`] levels.
-pub(crate) const DEEPEST: usize = UNBALANCED + 32;
+/// The deepest level: halving 2^32 primitives after `UNBALANCED` levels.
+pub const DEEPEST: usize = UNBALANCED + 32;
 
 /// The most primitives of a node that are sorted, with every place between two of them tried. For a million triangles,
 /// the tree whose larger nodes are divided by bins costs within a few percent of the fully sorted tree.
 const SORTED: usize = 4096;
-
-/// A node that is not yet known; it reserves a place in the list.
-pub(super) const UNKNOWN: Node = Node { faces: Bounds::EMPTY.faces(), at: 0, count: 0 };
 
 /// Primitives from which a node is to be built.
 struct Task<'a> {

@@ -10,22 +10,13 @@
 
 mod bounds;
 mod build;
-mod gather;
-mod kept;
 mod median;
 mod sah;
 mod sorted;
 mod traverse;
-mod tree_file;
 
-pub(crate) use bounds::Slabs;
-pub use bounds::{Bounds, padding};
-pub(crate) use build::DEEPEST;
-pub use gather::{Child, Content, Gathered};
-pub use kept::TreeStore;
-
-use crate::error::Result;
-use bounds::Faces;
+pub use bounds::{Bounds, Faces, Slabs, padding};
+pub use build::DEEPEST;
 
 /// Boxes and primitives that rays were tested against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -38,12 +29,14 @@ pub struct Tests {
 
 /// A node: a box, and where its children or primitives are.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Node {
-    faces: Faces,
-    /// For an inner node, the first child (the second one follows it); for a leaf, its first entry in `order`.
-    at: u32,
+pub struct Node {
+    /// The faces of its box.
+    pub faces: Faces,
+    /// For an inner node, the first child (the second one follows it); for a leaf, its first entry in
+    /// [`Hierarchy::order`].
+    pub at: u32,
     /// Entries of a leaf; 0 in an inner node.
-    count: u32,
+    pub count: u32,
 }
 
 /// The binary tree. Children are stored in pairs, depth first.
@@ -135,26 +128,13 @@ impl Entry {
         self.build.is_some()
     }
 
-    /// Whether a store is asked for a hierarchy over that many primitives.
-    pub fn is_kept(&self, primitives: usize) -> bool {
-        self.is_hierarchy() && primitives >= kept::WORTH_KEEPING
-    }
-
-    /// Builds the hierarchy over primitives with these boxes, or takes it from the store; `None` if there is nothing to
-    /// build.
-    pub fn build(
-        &self,
-        bounds: impl Iterator<Item = Option<Bounds>>,
-        store: Option<&dyn TreeStore>,
-    ) -> Result<Option<Hierarchy>> {
-        let Some(build) = self.build else { return Ok(None) };
+    /// Builds the hierarchy over primitives with these boxes; `None` if there is nothing to build.
+    pub fn build(&self, bounds: impl Iterator<Item = Option<Bounds>>) -> Option<Hierarchy> {
+        let build = self.build?;
         let mut items = Vec::with_capacity(bounds.size_hint().1.unwrap_or_default());
         let with_box = (0..).zip(bounds).filter_map(|(number, bounds)| Some(Item { bounds: bounds?.padded(), number }));
         items.extend(with_box);
-        match store {
-            Some(store) => kept::found_or_built(self.name, items, store, build),
-            None => Ok(build(items)),
-        }
+        build(items)
     }
 }
 
@@ -172,15 +152,19 @@ pub fn accelerator(name: Option<&str>, primitives: usize, scan: Scan) -> Option<
 }
 
 impl Hierarchy {
-    /// Returns the nodes in their order, each with the faces of its box and two numbers: for an inner node, the first
-    /// child and 0; for a leaf, the first entry in [`Hierarchy::order`] and the number of entries.
-    pub(crate) fn nodes(&self) -> impl ExactSizeIterator<Item = (Faces, u32, u32)> {
-        self.nodes.iter().map(|node| (node.faces, node.at, node.count))
+    /// Returns the nodes, the root first and children after their parents.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
     }
 
     /// Primitives in the order of the leaves.
-    pub(crate) fn order(&self) -> &[u32] {
+    pub fn order(&self) -> &[u32] {
         &self.order
+    }
+
+    /// Primitives in the order of the leaves; the nodes are freed.
+    pub fn into_order(self) -> Vec<u32> {
+        self.order
     }
 
     /// Returns the tree with every length multiplied by `factor`.

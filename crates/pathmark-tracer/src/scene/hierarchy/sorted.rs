@@ -1,7 +1,13 @@
 //! Construction of the nodes over few primitives, which are sorted once along each axis.
 
-use super::build::{UNBALANCED, UNKNOWN};
 use super::{Bounds, Item, Node, Split};
+
+/// From this level on, nodes are split in the middle instead of by the rule, so that a traversal never needs more than
+/// [`DEEPEST`](super::DEEPEST) places.
+pub(super) const UNBALANCED: usize = 32;
+
+/// A node that is not yet known; it reserves a place in the list.
+pub(super) const UNKNOWN: Node = Node { faces: Bounds::EMPTY.faces(), at: 0, count: 0 };
 
 /// A node that is still to be built: its index, its range of the sorted primitives, and its depth.
 struct Task {

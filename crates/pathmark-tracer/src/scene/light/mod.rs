@@ -8,7 +8,7 @@ mod reach;
 mod sphere;
 mod triangle;
 
-use super::{Hit, Primitives, Scene, Standpoint};
+use super::{Hit, Primitives, Scene, SurfaceOrigin};
 use crate::math::{Ray, Rgb, Vec3};
 use reach::{Part, Walls};
 use sphere::SphereTarget;
@@ -144,7 +144,7 @@ impl Lights {
     pub fn aim(
         &self,
         point: Vec3,
-        from: Option<Standpoint>,
+        from: Option<SurfaceOrigin>,
         choice: impl FnOnce() -> f64,
         place: [f64; 2],
     ) -> Option<Aim> {
@@ -174,7 +174,7 @@ impl Lights {
     /// Returns the density per steradian with which [`Lights::aim`] samples the direction of a ray that met `hit`; 0 if
     /// `hit` is on no target.
     #[inline(always)]
-    pub fn density(&self, ray: &Ray, from: Option<Standpoint>, hit: &Hit) -> f64 {
+    pub fn density(&self, ray: &Ray, from: Option<SurfaceOrigin>, hit: &Hit) -> f64 {
         let Some(light) = self.lights.get(self.of_primitive[hit.primitive as usize] as usize) else { return 0.0 };
         let own = own(from, light.primitive);
         let density = match &light.target {
@@ -187,7 +187,7 @@ impl Lights {
 
 /// Returns whether a ray that starts on this light leaves to its inside; `None` if it starts elsewhere.
 #[inline(always)]
-fn own(from: Option<Standpoint>, light: u32) -> Option<bool> {
+fn own(from: Option<SurfaceOrigin>, light: u32) -> Option<bool> {
     from.filter(|from| from.primitive == light).map(|from| from.inside)
 }
 

@@ -21,7 +21,7 @@
 //! coordinates of the ray's origin and of the box.) If the nearest hit is sure, F was within every limit on the way, so
 //! F was found and is the result.
 
-use super::{Bounds, Nearest, Primitive, Primitives, Standpoint, Triangle};
+use super::{Bounds, Nearest, Primitive, Primitives, SurfaceOrigin, Triangle};
 use crate::math::{Ray, Vec3, dot};
 use crate::scene::hierarchy::{Hierarchy, Tests, padding};
 use crate::scene::{AllEffects, Hit};
@@ -30,6 +30,7 @@ use crate::scene::{AllEffects, Hit};
 /// is the sum of the largest coordinates of the ray's origin and of the triangle; numbers have `digits` binary digits.
 /// The result is a few digits less than the square root of an ulp. Hits from near starts are searched again, which only
 /// costs time.
+#[inline]
 pub const fn nearness(digits: u32) -> f64 {
     1.0 / (1_u64 << (digits * 5 / 8)) as f64
 }
@@ -82,7 +83,7 @@ impl Triangle {
 impl Primitives {
     /// Returns the triangle of that number; `None` if the primitive is no triangle.
     #[inline(always)]
-    pub(crate) fn triangle(&self, primitive: u32) -> Option<&Triangle> {
+    pub fn triangle(&self, primitive: u32) -> Option<&Triangle> {
         self.triangles.get((primitive as usize).checked_sub(self.spheres.len() + self.planes.len())?)
     }
 
@@ -103,7 +104,7 @@ impl Primitives {
         &self,
         hierarchy: Option<&Hierarchy>,
         ray: &Ray,
-        from: Option<Standpoint>,
+        from: Option<SurfaceOrigin>,
         (limit, digits): (f64, u32),
         tests: &mut Tests,
     ) -> Nearest {
@@ -119,7 +120,8 @@ impl Primitives {
 
     /// Returns a function from a primitive's number to its distance along the ray; NaN without a sure hit. The ray's
     /// coordinates have `digits` binary digits.
-    pub(crate) fn sure_distances(&self, ray: &Ray, from: Option<Standpoint>, digits: u32) -> impl Fn(u32) -> f64 {
+    #[inline]
+    pub fn sure_distances(&self, ray: &Ray, from: Option<SurfaceOrigin>, digits: u32) -> impl Fn(u32) -> f64 {
         let prepared = Self::prepare(ray);
         let own = from.and_then(|from| self.triangle(from.primitive));
         move |primitive| {

@@ -23,9 +23,6 @@ use serde::Deserialize;
 use std::io::BufRead;
 use std::path::Path;
 
-/// The longest line of a text in bytes; real lines are far shorter.
-pub(super) const LONGEST_LINE: u64 = 1 << 20;
-
 /// The default size limit in MiB: a file of some ten million triangles.
 const fn largest() -> u32 {
     1024
@@ -73,7 +70,7 @@ impl Mesh {
     /// Opens the file and refuses files of other kinds; also returns its first line, for messages.
     fn open(&self, files: &mut Files<'_>) -> Result<(Box<dyn BufRead>, String)> {
         // A binary file has no lines, so their length has no limit.
-        let line = if self.is_ply() { u64::MAX } else { LONGEST_LINE };
+        let line = if self.is_ply() { u64::MAX } else { obj::LONGEST_LINE };
         let mut file = files.open(&self.file, u64::from(self.largest_mib) << 20, line)?;
         let start = file.fill_buf().map_err(|e| unreadable(Path::new(&files.folder.place_of(&self.file)), e))?;
         let first = foreign::first_line(start);

@@ -21,7 +21,7 @@ mod sphere;
 mod triangle;
 
 use super::hierarchy::{Bounds, Hierarchy, Tests};
-use super::{HIERARCHY, Standpoint};
+use super::{HIERARCHY, SurfaceOrigin};
 use crate::effect::{EffectSet, Effects, Entry};
 use crate::error::Result;
 use crate::math::{Ray, Vec3};
@@ -143,7 +143,7 @@ macro_rules! primitives {
             fn scan<X: EffectSet>(
                 &self,
                 ray: &Ray,
-                from: Option<Standpoint>,
+                from: Option<SurfaceOrigin>,
                 mut nearest: Nearest,
                 is_wanted: impl Fn(Effects) -> bool,
             ) -> Nearest {
@@ -179,7 +179,7 @@ macro_rules! primitives {
                 primitive: u32,
                 ray: &Ray,
                 prepared: &Prepared,
-                from: Option<Standpoint>,
+                from: Option<SurfaceOrigin>,
             ) -> f64 {
                 let mut index = primitive as usize;
                 $(if X::EFFECTS.cover($Type::EFFECT) {
@@ -242,7 +242,7 @@ shapes! {
 impl Nearest {
     /// Returns a search's initial state: no primitive, and only hits nearer than `t` count.
     #[inline(always)]
-    pub(crate) fn than(t: f64) -> Self {
+    pub fn than(t: f64) -> Self {
         Self { t, primitive: u32::MAX }
     }
 
@@ -261,7 +261,8 @@ impl Nearest {
     /// Likewise, for primitives in any order. A hit exactly at the initial limit, where no primitive is, does not
     /// count.
     #[inline(always)]
-    pub(crate) fn or_in_any_order(self, distance: f64, primitive: u32) -> Self {
+    #[must_use]
+    pub fn or_in_any_order(self, distance: f64, primitive: u32) -> Self {
         let ahead = if distance > 0.0 { distance } else { f64::INFINITY };
         let comes_first = primitive < self.primitive && self.primitive != u32::MAX;
         let wins = ahead < self.t || (ahead == self.t && comes_first);
@@ -271,9 +272,10 @@ impl Nearest {
     /// Likewise, for the primitive on which a ray starts and leads inside. Its start may be rounded to outside the box
     /// of that primitive, so a search in a hierarchy begins with it.
     #[inline(always)]
-    pub(crate) fn or_own(self, from: Option<Standpoint>, distance: impl FnOnce(u32) -> f64) -> Self {
+    #[must_use]
+    pub fn or_own(self, from: Option<SurfaceOrigin>, distance: impl FnOnce(u32) -> f64) -> Self {
         match from {
-            Some(Standpoint { primitive, inside: true }) => self.or_in_any_order(distance(primitive), primitive),
+            Some(SurfaceOrigin { primitive, inside: true }) => self.or_in_any_order(distance(primitive), primitive),
             _ => self,
         }
     }
@@ -287,7 +289,7 @@ impl Primitives {
         &self,
         hierarchy: Option<&Hierarchy>,
         ray: &Ray,
-        from: Option<Standpoint>,
+        from: Option<SurfaceOrigin>,
         limit: f64,
         tests: &mut Tests,
     ) -> Nearest {
@@ -305,7 +307,7 @@ impl Primitives {
 
     /// Returns the nearest infinite primitive, which is too large for a hierarchy.
     #[inline(always)]
-    fn endless<X: EffectSet>(&self, ray: &Ray, from: Option<Standpoint>, none: Nearest) -> Nearest {
+    fn endless<X: EffectSet>(&self, ray: &Ray, from: Option<SurfaceOrigin>, none: Nearest) -> Nearest {
         self.scan::<X>(ray, from, none, |kind| kind == Plane::EFFECT)
     }
 }

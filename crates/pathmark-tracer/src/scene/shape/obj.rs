@@ -4,7 +4,6 @@
 //!
 //! A file is read line by line and never in memory as a whole.
 
-use super::mesh::LONGEST_LINE;
 use super::polygon::MOST_CORNERS;
 use crate::digest::Fingerprint;
 use crate::error::{Error, InputError, Result};
@@ -13,6 +12,9 @@ use crate::math::Vec3;
 use std::collections::BTreeSet;
 use std::io::BufRead;
 use std::path::Path;
+
+/// The longest line of a text in bytes; real lines are far shorter.
+pub(super) const LONGEST_LINE: u64 = 1 << 20;
 
 /// First words of unused lines, and the contents of such lines.
 const UNUSED: [(&str, &str); 5] = [

@@ -1,0 +1,79 @@
+//! Double precision: four numbers in a register.
+
+use super::single::F32x8;
+use super::{Mask4, U64x4, spread, x86};
+use crate::simd::{Float, Table};
+use pathmark_tracer::math::{Bits, Real};
+
+register! {
+    /// Four numbers.
+    F64x4(__m256d) = 4 f64, Mask4, U64x4, F32x8;
+    splat _mm256_set1_pd, load _mm256_loadu_pd, store _mm256_storeu_pd, compare _mm256_cmp_pd, fused _mm256_fmadd_pd,
+    add _mm256_add_pd, sub _mm256_sub_pd, mul _mm256_mul_pd, div _mm256_div_pd, xor _mm256_xor_pd,
+    sqrt _mm256_sqrt_pd, min _mm256_min_pd, max _mm256_max_pd;
+    abs(x) = x86::_mm256_andnot_pd(x86::_mm256_set1_pd(-0.0), x);
+    copysign(x, sign) = {
+        let zero = x86::_mm256_set1_pd(-0.0);
+        x86::_mm256_or_pd(x86::_mm256_andnot_pd(zero, x), x86::_mm256_and_pd(zero, sign))
+    };
+    select(mask, yes, no) = x86::_mm256_blendv_pd(no, yes, mask);
+    own {
+        #[inline(always)]
+        fn fill(self, mask: Mask4, from: &[f64]) -> Self {
+            let next = op!(x86::_mm256_castpd_si256(Self::load(from).0));
+            Self::select(mask, Self(op!(x86::_mm256_castsi256_pd(spread(mask, next)))), self)
+        }
+        #[inline(always)]
+        fn set_lane(&mut self, lane: usize, value: f64) {
+            let mut all = [0.0; 4];
+            self.store(&mut all);
+            all[lane] = value;
+            *self = Self::load(&all);
+        }
+        #[inline(always)]
+        fn sooner(self, other: Self) -> Self {
+            self.smaller(other)
+        }
+        #[inline(always)]
+        fn later(self, other: Self) -> Self {
+            self.larger(other)
+        }
+        #[inline(always)]
+        fn number(bits: U64x4) -> Self {
+            // The halves become the lowest digits of 2^84 and of 2^52; these powers are then subtracted again.
+            op!({
+                let [of_high, of_low] = [Self::splat(TWO_84).0, Self::splat(TWO_52).0];
+                let high = x86::_mm256_srli_epi64::<32>(bits.0);
+                let high = x86::_mm256_or_si256(high, x86::_mm256_castpd_si256(of_high));
+                let low = x86::_mm256_blend_epi32::<0b1010_1010>(bits.0, x86::_mm256_castpd_si256(of_low));
+                let (high, low) = (Self(x86::_mm256_castsi256_pd(high)), Self(x86::_mm256_castsi256_pd(low)));
+                high - Self::splat(TWO_84 + TWO_52) + low
+            })
+        }
+        #[inline(always)]
+        fn unit(bits: U64x4) -> Self {
+            Self::number(bits.down::<11>()) * Self::splat(1.0 / 9_007_199_254_740_992.0)
+        }
+        #[inline(always)]
+        fn rows(table: &Table, rows: Self) -> [Self; 4] {
+            let mut numbers = [0; 4];
+            op!(x86::_mm_storeu_si128(numbers.as_mut_ptr().cast(), x86::_mm256_cvttpd_epi32(rows.0)));
+            let (a, b) = (op!(x86::_mm256_loadu_pd(table.row_start(numbers[0]))), op!(x86::_mm256_loadu_pd(table.row_start(numbers[1]))));
+            let (c, d) = (op!(x86::_mm256_loadu_pd(table.row_start(numbers[2]))), op!(x86::_mm256_loadu_pd(table.row_start(numbers[3]))));
+            // The transpose of four by four.
+            op!({
+                let (ab0, ab1) = (x86::_mm256_unpacklo_pd(a, b), x86::_mm256_unpackhi_pd(a, b));
+                let (cd0, cd1) = (x86::_mm256_unpacklo_pd(c, d), x86::_mm256_unpackhi_pd(c, d));
+                [
+                    Self(x86::_mm256_permute2f128_pd::<0x20>(ab0, cd0)),
+                    Self(x86::_mm256_permute2f128_pd::<0x20>(ab1, cd1)),
+                    Self(x86::_mm256_permute2f128_pd::<0x31>(ab0, cd0)),
+                    Self(x86::_mm256_permute2f128_pd::<0x31>(ab1, cd1)),
+                ]
+            })
+        }
+    }
+}
+
+const TWO_52: f64 = 4_503_599_627_370_496.0;
+const TWO_84: f64 = 19_342_813_113_834_066_795_298_816.0;
