@@ -106,9 +106,9 @@ fn all_commands_share_a_file() {
     let scene = ["spheres:5000", "--size", "16x12", "--estimator", "bsdf", "--cache", "trees"];
     let commands: [&[&str]; 5] = [
         &["render", "--spp", "1", "-o", "x.pfm"],
-        &["rays", "--repetitions", "1"],
-        &["bounces", "--spp", "2"],
-        &["replay", "--pixel", "8,6"],
+        &["inspect", "rays", "--repetitions", "1"],
+        &["inspect", "bounces", "--spp", "2"],
+        &["inspect", "path", "--pixel", "8,6"],
         &["price", "--rmse", "1", "--pilot-spp", "1", "--pilot-seeds", "3"],
     ];
     for command in commands {

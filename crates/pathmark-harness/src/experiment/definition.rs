@@ -33,7 +33,7 @@
 //!
 //! [quick]                        # what `--quick` renders; the profile may replace any axis of the matrices
 //! size = [128, 96]
-//! repetitions = 6                # or { until = "3 %", at-most = 200, within = "60 s" }; until = "fastest" or "order" compares schedules
+//! repetitions = 6                # or { until = "3 %", at-most = 200, max-time = "60 s" }; until = "fastest" or "order" compares schedules
 //! reference-spp = 2000           # optional: ten times the largest spp
 //!
 //! [full]                         # `--full`; without any of [quick], [full] and [reports] there is a [quick] of 320x240, 6 repetitions
