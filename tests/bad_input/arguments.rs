@@ -5,6 +5,11 @@ use super::refused;
 /// Wrong options of `render cornell`, and the words that the message must contain: field, value, allowed values.
 const WRONG: &[(&[&str], &[&str])] = &[
     (&["--strategy", "stealth"], &["strategy", "stealth", "work-stealing", "thread-per-row"]),
+    #[cfg(not(feature = "more-pools"))]
+    (
+        &["--strategy", "orx-parallel"],
+        &["strategy = orx-parallel", "is missing from this build", "--features more-pools"],
+    ),
     (&["--strategy", "dynamic:0"], &["strategy", "dynamic:0", "from 1"]),
     (&["--strategy", "rayon:3"], &["strategy", "rayon:3", "none"]),
     (&["--strategy", "steal-half:poorest"], &["strategy", "steal-half:poorest", "richest"]),

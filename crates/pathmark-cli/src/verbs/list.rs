@@ -71,7 +71,7 @@ struct Item {
     kind: Option<String>,
     name: String,
     about: String,
-    /// What to do about a warning.
+    /// The remedy for a warning.
     #[serde(skip_serializing_if = "Option::is_none")]
     advice: Option<&'static str>,
     #[serde(flatten)]

@@ -77,11 +77,18 @@ pub(super) struct Feature {
 }
 
 /// The features that an experiment may require.
-pub(super) const FEATURES: &[Feature] = &[Feature {
-    name: "openmp",
-    is_there: cfg!(feature = "openmp"),
-    takes: "a program built by `cargo run --release --features openmp -- ...`",
-}];
+pub(super) const FEATURES: &[Feature] = &[
+    Feature {
+        name: "openmp",
+        is_there: cfg!(feature = "openmp"),
+        takes: "a program built by `cargo run --release --features openmp -- ...`",
+    },
+    Feature {
+        name: "more-pools",
+        is_there: cfg!(feature = "more-pools"),
+        takes: "a program built by `cargo run --release --features more-pools -- ...`",
+    },
+];
 
 /// Files that a sweep may keep beside its rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]

@@ -18,7 +18,7 @@ const KEYS: &[(&str, &str)] = &[
         "timeout",
         "time limit of each cell's process, as in \"10min\", or \"none\" [default: ten times its estimate, at least a minute]",
     ),
-    ("requires", "optional features that the build must have: openmp"),
+    ("requires", "optional features that the build must have: openmp, more-pools"),
     ("matrix", "a table of axes, or several under [[matrix]]; cells are all combinations [required]"),
     ("matrix.weak", "true: weak scaling, spp is multiplied by the number of workers"),
     ("matrix.curve", "true: each render gives rows at 1, 2, 4 ... times the fewest samples, up to its spp"),
