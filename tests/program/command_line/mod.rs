@@ -1,12 +1,12 @@
 //! The command line works as its help says: every name that `list` prints runs as it is, and verbs read each other's
 //! files.
 
-mod check;
 mod files;
 mod names;
 mod rounds;
 mod scenes;
 mod schedules;
+mod selftest;
 mod shards;
 
 use crate::experiment::{TINY, write_tiny};
