@@ -57,6 +57,7 @@
 // Tests may unwrap; the library returns errors that say what is wrong.
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
+#[cfg(feature = "program")]
 use std::process::ExitCode;
 
 pub use pathmark_harness::Lab;

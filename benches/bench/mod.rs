@@ -1,20 +1,15 @@
-//! A bench program: criterion measures, its output goes into a file, and tables of its stored results end the run.
+//! A bench program: criterion measures and prints each case, and tables of its stored results end the run.
 //!
-//! With a flag of criterion (`--verbose`, `--list`, `--test` and so on) it prints as usual. With
-//! `PATHMARK_BENCH_OUT=DIR` the cases of `scheduling` are also written into that results folder, where
+//! With `PATHMARK_BENCH_OUT=DIR` the cases of `scheduling` are also written into that results folder, where
 //! `pathmark report DIR` finds them.
 
 mod stored;
 mod table;
 
 use criterion::Criterion;
-use nix::unistd::{dup, dup2_stderr, dup2_stdout};
 use pathmark::measure::{ForeignLoad, Machine};
 use pathmark::report::{BenchRow, write_benches};
-use std::fs::{File, create_dir_all};
-use std::io::{IsTerminal, stderr, stdout};
-use std::os::fd::OwnedFd;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::SystemTime;
 
 /// The program whose cases go into a results folder, and its group with a table of speedups.
@@ -25,11 +20,8 @@ const OF_SPEEDUPS: &str = "scheduling";
 pub(crate) fn run(name: &str, units: &[(&str, &str)], cases: impl FnOnce(&mut Criterion)) {
     let (start, load) = (SystemTime::now(), ForeignLoad::begin());
     let mut criterion = Criterion::default().without_plots().nresamples(2000).configure_from_args();
-    let is_quiet = std::env::args().skip(1).all(|argument| argument == "--bench" || !argument.starts_with('-'));
-    let aside = if is_quiet { Aside::begin(name) } else { None };
     cases(&mut criterion);
     criterion.final_summary();
-    drop(aside);
     let rows = stored::since(start);
     if rows.is_empty() {
         return;
@@ -64,47 +56,5 @@ fn write(name: &str, rows: &[BenchRow]) {
     let filter = if filter.is_empty() { String::new() } else { format!(" -- {}", filter.join(" ")) };
     if let Err(error) = write_benches(Path::new(&out), format!("cargo bench --bench {name}{filter}"), rows) {
         eprintln!("{error}");
-    }
-}
-
-/// Redirects the program's output into a file while it lives. On a terminal standard error stays, because criterion
-/// writes its progress line there.
-struct Aside {
-    file: PathBuf,
-    stdout: OwnedFd,
-    stderr: Option<OwnedFd>,
-}
-
-impl Aside {
-    /// Starts the redirection; `None` if no file can be written, and then criterion prints.
-    fn begin(name: &str) -> Option<Self> {
-        let folder = stored::folder();
-        create_dir_all(&folder).ok()?;
-        let path = folder.join(format!("{name}.txt"));
-        let file = File::create(&path).ok()?;
-        println!("{name}: criterion's own lines go to {}", path.display());
-        let shows_progress = stdout().is_terminal();
-        let kept = Self {
-            file: path,
-            stdout: dup(stdout()).ok()?,
-            stderr: if shows_progress { None } else { Some(dup(stderr()).ok()?) },
-        };
-        dup2_stdout(&file).ok()?;
-        if kept.stderr.is_some() {
-            dup2_stderr(&file).ok()?;
-        }
-        Some(kept)
-    }
-}
-
-impl Drop for Aside {
-    fn drop(&mut self) {
-        dup2_stdout(&self.stdout).unwrap_or_default();
-        if let Some(kept) = &self.stderr {
-            dup2_stderr(kept).unwrap_or_default();
-        }
-        if std::thread::panicking() {
-            eprintln!("a bench failed; {} says how", self.file.display());
-        }
     }
 }

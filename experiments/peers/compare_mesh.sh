@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Compares us on a mesh with one of two other programs, on one thread, in interleaved pairs: ours, theirs, theirs, ours, ...
 #
-#   experiments/peers/compare_mesh.sh embree [PAIRS] [TRIANGLES] [-- options of `pathmark rays`]
+#   experiments/peers/compare_mesh.sh embree [PAIRS] [TRIANGLES] [-- options of `pathmark inspect rays`]
 #   experiments/peers/compare_mesh.sh mitsuba [PAIRS] [TRIANGLES] [-- options of `pathmark render`]
 #
 # `embree`: rays per second of rtcIntersect1 with RTC_SCENE_FLAG_ROBUST, along the rays of our paths. Needs g++ and Debian's libembree-dev.
@@ -27,7 +27,7 @@ value() { sed -E "s/.*\"$1\":([0-9.e+-]+).*/\1/"; }
 
 # Each function prints a cost: seconds per ray, or the seconds of an image times the mean squared error between two seeds.
 ours_embree() {
-  "$program" rays "$scene" --size 256x256 --estimator bsdf --repetitions 5 --json --quiet "${options[@]}" |
+  "$program" inspect rays "$scene" --size 256x256 --estimator bsdf --repetitions 5 --json --quiet "${options[@]}" |
     value median_rays_per_s | awk '{ print 1 / $1 }'
 }
 theirs_embree() { "$work/peer" "$work/rays" 5 robust | awk '/rays\/s/ { print $1 }' | sort -n | sed -n 3p | awk '{ print 1 / $1 }'; }
@@ -51,7 +51,7 @@ cost() { "$program" compare "$work/${1}0.pfm" "$work/${1}1.pfm" --json | value m
 
 if [[ $peer == embree ]]; then
   g++ -O3 -march=native experiments/peers/embree.cpp -lembree3 -o "$work/peer"
-  "$program" rays "$scene" --size 256x256 --estimator bsdf --repetitions 1 --export "$work/rays" --quiet >/dev/null
+  "$program" inspect rays "$scene" --size 256x256 --estimator bsdf --repetitions 1 --export "$work/rays" --quiet >/dev/null
 fi
 for ((pair = 1; pair <= pairs; pair++)); do
   if ((pair % 2)); then a=$("ours_$peer" $pair) b=$("theirs_$peer" $pair); else b=$("theirs_$peer" $pair) a=$("ours_$peer" $pair); fi

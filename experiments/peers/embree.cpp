@@ -1,4 +1,4 @@
-// Measures rays per second of Embree on one thread, with the rays that `pathmark rays SCENE --export FILE` wrote:
+// Measures rays per second of Embree on one thread, with the rays that `pathmark inspect rays SCENE --export FILE` wrote:
 //
 //   embree FILE [REPETITIONS] [robust|fast]
 //

@@ -5,6 +5,11 @@ use super::refused;
 /// Wrong options of `render cornell`, and the words that the message must contain: field, value, allowed values.
 const WRONG: &[(&[&str], &[&str])] = &[
     (&["--strategy", "stealth"], &["strategy", "stealth", "work-stealing", "thread-per-row"]),
+    #[cfg(not(feature = "more-pools"))]
+    (
+        &["--strategy", "orx-parallel"],
+        &["strategy = orx-parallel", "is missing from this build", "--features more-pools"],
+    ),
     (&["--strategy", "dynamic:0"], &["strategy", "dynamic:0", "from 1"]),
     (&["--strategy", "rayon:3"], &["strategy", "rayon:3", "none"]),
     (&["--strategy", "steal-half:poorest"], &["strategy", "steal-half:poorest", "richest"]),
@@ -114,10 +119,10 @@ fn names_that_there_are_not_are_answered_with_those_that_there_are() {
     let folder = tempfile::tempdir().unwrap();
     let cases: &[(&[&str], &[&str])] = &[
         (&["render", "bathroom"], &["scene", "bathroom", "cornell", ".toml"]),
-        (&["reference", "bathroom", "--spp", "4"], &["scene", "bathroom", "cornell"]),
-        (&["reference", "cornell", "--spp", "0"], &["spp", "0", "1 to"]),
-        (&["reference", "cornell", "--spp", "4", "--size", "0x5"], &["size", "0x5"]),
-        (&["reference", "cornell", "--spp", "4", "--estimator", "magic"], &["estimator", "magic", "bsdf"]),
+        (&["image", "reference", "bathroom", "--spp", "4"], &["scene", "bathroom", "cornell"]),
+        (&["image", "reference", "cornell", "--spp", "0"], &["spp", "0", "1 to"]),
+        (&["image", "reference", "cornell", "--spp", "4", "--size", "0x5"], &["size", "0x5"]),
+        (&["image", "reference", "cornell", "--spp", "4", "--estimator", "magic"], &["estimator", "magic", "bsdf"]),
         (&["run", "cold-fusion"], &["experiment", "cold-fusion", "thread-scaling", ".toml"]),
         (&["run", "thread-scaling", "--repetitions", "0"], &["repetitions", "0"]),
         (&["run", "thread-scaling", "--repetitions", "4294967295"], &["repetitions", "4294967295", "10000"]),
@@ -125,9 +130,12 @@ fn names_that_there_are_not_are_answered_with_those_that_there_are() {
         (&["reproduce", "--timeout", "-1s"], &["timeout = -1s", "above 0"]),
         (&["run", "thread-scaling", "--filter", "no-such-cell"], &["filter", "no-such-cell"]),
         (&["run", "thread-scaling", "--filter", "strategy=warp"], &["filter", "strategy=warp"]),
-        (&["rays", "cornell", "--estimator", "bsdf", "--repetitions", "4294967295"], &["repetitions", "4294967295"]),
         (
-            &["rays", "cornell", "--estimator", "bsdf", "--size", "8192x8192", "--spp", "64"],
+            &["inspect", "rays", "cornell", "--estimator", "bsdf", "--repetitions", "4294967295"],
+            &["repetitions", "4294967295"],
+        ),
+        (
+            &["inspect", "rays", "cornell", "--estimator", "bsdf", "--size", "8192x8192", "--spp", "64"],
             &["spp = 64", "4294967296 paths", "at most 16777216"],
         ),
         (
@@ -137,8 +145,8 @@ fn names_that_there_are_not_are_answered_with_those_that_there_are() {
         (&["list", "planets"], &["planets", "scenes", "strategies"]),
         (&["report", "nowhere"], &["folder", "nowhere"]),
         (&["report", "."], &["folder", "records.csv"]),
-        (&["compare", "a.png", "b.png"], &["image", "a.png", "no such file"]),
-        (&["compare", "a.tga", "b.png"], &["image", "a.tga", "png", "pfm"]),
+        (&["image", "compare", "a.png", "b.png"], &["image", "a.png", "no such file"]),
+        (&["image", "compare", "a.tga", "b.png"], &["image", "a.tga", "png", "pfm"]),
         (&["teleport"], &["teleport"]),
     ];
     for (arguments, said) in cases {
@@ -182,5 +190,5 @@ fn a_workload_takes_no_options_of_light() {
 #[test]
 fn a_warning_that_there_is_not_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    refused(folder.path(), &["explain", "drizzle(25 %)"], 2, &["warning", "drizzle", "drift", "too-short"]);
+    refused(folder.path(), &["list", "warnings", "drizzle(25 %)"], 2, &["warning", "drizzle", "drift", "too-short"]);
 }

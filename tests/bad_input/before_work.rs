@@ -27,7 +27,7 @@ fn a_name_too_long_for_the_files_to_come() {
     let folder = tempfile::tempdir().unwrap();
     let scene = format!("{}.toml", "x".repeat(220));
     fs::write(folder.path().join(&scene), "about = 'a test'\nbase = 'cornell'\n").unwrap();
-    let reference = ["reference", &scene, "--spp", "16000000", "--out", "."];
+    let reference = ["image", "reference", &scene, "--spp", "16000000", "--out", "."];
     refused(folder.path(), &reference, 2, &["xxx", "up to 255 bytes"]);
     for text in [
         TINY.replace("[quick]\n", REFERENCE),
@@ -104,8 +104,8 @@ fn files_without_an_end() {
     std::os::unix::fs::symlink("/dev/zero", folder.path().join("zero.png")).unwrap();
     let checkpoint = [&LONG[..], &["--checkpoint", "zero.film"]].concat();
     let cases: [(&[&str], &[&str]); 12] = [
-        (&["trace", "/dev/zero"], &["/dev/zero", "byte 0 is zero"]),
-        (&["trace", "."], &["directory"]),
+        (&["inspect", "jobs", "/dev/zero"], &["/dev/zero", "byte 0 is zero"]),
+        (&["inspect", "jobs", "."], &["directory"]),
         (&["simulate", "/dev/zero", "--out", "new"], &["/dev/zero", "byte 0 is zero"]),
         (&["render", "/dev/zero"], &["/dev/zero", "zero"]),
         (&["render", "zero.toml"], &["zero.toml:2:", "base = /dev/zero", "byte 0 is zero"]),
@@ -113,8 +113,8 @@ fn files_without_an_end() {
         (&["render", "mesh.toml"], &["mesh.toml:4:", "/dev/zero", "byte 0 is zero"]),
         (&["render", "nul-mesh.toml"], &["nul-mesh.toml:4:", "zero byte"]),
         (&["run", "/dev/../dev/zero.toml"], &["no such file"]),
-        (&["compare", "zero.png", "zero.png"], &["zero.png", "regular file"]),
-        (&["compare", "zero.film", "zero.film"], &["zero.film"]),
+        (&["image", "compare", "zero.png", "zero.png"], &["zero.png", "regular file"]),
+        (&["image", "compare", "zero.film", "zero.film"], &["zero.film"]),
         (&checkpoint, &["zero.film", "regular file"]),
     ];
     for (arguments, said) in cases {

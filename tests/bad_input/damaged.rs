@@ -32,7 +32,7 @@ fn a_damaged_reference_is_refused_and_kept() {
     let folder = tempfile::tempdir().unwrap();
     let text = TINY.replace("[quick]\n", "[reference]\nestimator = \"bsdf\"\n\n[quick]\nreference-spp = 40\n");
     write_tiny(folder.path(), &text);
-    let reference = ["reference", "cornell", "--size", "24x16", "--spp", "40", "--out", "out/references"];
+    let reference = ["image", "reference", "cornell", "--size", "24x16", "--spp", "40", "--out", "out/references"];
     finish(pathmark(folder.path(), &reference)).with_code(0);
     let films = films(&folder.path().join("out/references"));
     assert_eq!(films.len(), 2);

@@ -39,7 +39,7 @@ fn an_output_that_cannot_be_is_refused_before_rendering() {
         refused(folder.path(), &[LONG.as_slice(), &[option, "nowhere/file"]].concat(), 2, &[&said]);
     }
     let said = "csv = nowhere/file: its directory does not exist";
-    refused(folder.path(), &["bounces", "cornell", "--csv", "nowhere/file"], 2, &[said]);
+    refused(folder.path(), &["inspect", "bounces", "cornell", "--csv", "nowhere/file"], 2, &[said]);
 }
 
 /// /proc refuses new files even from root.
@@ -51,7 +51,7 @@ fn refusals_of_the_system_are_system_errors() {
     let cases: &[&[&str]] = &[
         &["run", "thread-scaling", "--out", "/proc/new"],
         &["reproduce", "--out", "/proc/new"],
-        &["reference", "cornell", "--spp", "4", "--size", "8x8", "--out", "/proc/new"],
+        &["image", "reference", "cornell", "--spp", "4", "--size", "8x8", "--out", "/proc/new"],
     ];
     for arguments in cases {
         refused(folder.path(), arguments, 3, &["/proc/new"]);
@@ -65,7 +65,7 @@ fn an_output_folder_that_is_a_file_is_refused() {
     let cases: &[&[&str]] = &[
         &["run", "thread-scaling", "--out", "file"],
         &["reproduce", "--out", "file"],
-        &["reference", "cornell", "--spp", "4", "--size", "8x8", "--out", "file"],
+        &["image", "reference", "cornell", "--spp", "4", "--size", "8x8", "--out", "file"],
     ];
     for arguments in cases {
         println!("{arguments:?}");
@@ -78,7 +78,7 @@ fn an_output_folder_that_is_a_file_is_refused() {
 #[test]
 fn files_of_others_in_a_folder_of_results_are_kept() {
     let run: &[&str] = &["run", "tiny.toml", "--out", "out"];
-    let check: &[&str] = &["check", "--out", "out"];
+    let check: &[&str] = &["selftest", "--out", "out"];
     let cases: &[(&str, &[&str])] = &[
         ("out/report.html", run),
         ("out/tiny/machine.toml", run),
@@ -169,12 +169,12 @@ fn images_that_cannot_be_compared_are_refused() {
     ];
     for (arguments, said) in cases {
         println!("{arguments:?}");
-        refused(folder.path(), &[&["compare"], *arguments].concat(), 2, said);
+        refused(folder.path(), &[&["image", "compare"], *arguments].concat(), 2, said);
     }
     for (arguments, said) in [
-        (["convert", "a.pfm", "-o", "a.tga"], ["a.tga", "png"]),
-        (["convert", "a.film", "-o", "a.png"], ["a.film", "no such file"]),
-        (["convert", "text.png", "-o", "a.png"], ["image", "text.png"]),
+        (["image", "convert", "a.pfm", "-o", "a.tga"], ["a.tga", "png"]),
+        (["image", "convert", "a.film", "-o", "a.png"], ["a.film", "no such file"]),
+        (["image", "convert", "text.png", "-o", "a.png"], ["image", "text.png"]),
     ] {
         refused(folder.path(), &arguments, 2, &said);
     }

@@ -19,12 +19,15 @@ fn paths_of_another_kind_are_the_users_mistake() {
     let folder = folder();
     let cases: [(&[&str], &[&str]); 14] = [
         (&["run", "thread-scaling", "--out", "/dev/null"], &["out = /dev/null", "a folder is needed"]),
-        (&["reference", "cornell", "--spp", "4", "--out", "/dev/null"], &["out = /dev/null", "a folder is needed"]),
+        (
+            &["image", "reference", "cornell", "--spp", "4", "--out", "/dev/null"],
+            &["out = /dev/null", "a folder is needed"],
+        ),
         (&["merge", "nothere", "-o", "a.pfm"], &["part = nothere", "no such file or folder"]),
         (&["merge", "nothere", "-o", "out"], &["part = nothere", "no such file or folder"]),
         (&["rank", "box.png"], &["folder = box.png", "is not a folder"]),
         (&["rank", "nothere"], &["nothere", "no such file"]),
-        (&["trace", "box.png"], &["box.png:1:1: header", "not the first line of a trace"]),
+        (&["inspect", "jobs", "box.png"], &["box.png:1:1: header", "not the first line of a trace"]),
         (&["simulate", "box.png"], &["box.png:1:1: header", "not the first line of a trace"]),
         (&["new", "scene", "a/b/c"], &["name = a/b/c.toml", "its folder does not exist"]),
         (&["new", "scene", "box.png/c"], &["name = box.png/c.toml", "not a directory"]),
@@ -54,11 +57,11 @@ fn pipes_are_refused() {
     let cases: [&[&str]; 7] = [
         &["render", "pipe.toml"],
         &["run", "pipe.toml"],
-        &["trace", "pipe.csv"],
+        &["inspect", "jobs", "pipe.csv"],
         &["diff", "pipe.csv", "pipe.csv"],
         &["merge", "pipe.film", "-o", "a.pfm"],
-        &["compare", "pipe.film", "pipe.film"],
-        &["compare", "pipe.png", "pipe.png"],
+        &["image", "compare", "pipe.film", "pipe.film"],
+        &["image", "compare", "pipe.png", "pipe.png"],
     ];
     for arguments in cases {
         println!("{arguments:?}");
@@ -74,10 +77,11 @@ fn paths_need_not_be_text() {
     let render = ["render", "cornell", "--size", "4x4", "--spp", "4", "--trace"].map(OsString::from);
     let render: Vec<OsString> = render.into_iter().chain([name(".csv"), "-o".into(), name(".pfm")]).collect();
     finish(pathmark(folder.path(), &render)).with_code(0);
-    finish(pathmark(folder.path(), &[OsStr::new("trace"), &name(".csv")])).with_code(0);
-    finish(pathmark(folder.path(), &[OsStr::new("compare"), &name(".pfm"), &name(".pfm")])).with_code(0);
-    for verb in ["render", "run", "bounces"] {
-        let arguments = [OsStr::new(verb), &name(".toml")];
+    finish(pathmark(folder.path(), &[OsStr::new("inspect"), OsStr::new("jobs"), &name(".csv")])).with_code(0);
+    finish(pathmark(folder.path(), &[OsStr::new("image"), OsStr::new("compare"), &name(".pfm"), &name(".pfm")]))
+        .with_code(0);
+    for verb in [&["render"][..], &["run"], &["inspect", "bounces"]] {
+        let arguments: Vec<OsString> = verb.iter().map(OsString::from).chain([name(".toml")]).collect();
         refused(folder.path(), &arguments, 2, &["argument = a\u{fffd}.toml", "is not UTF-8 text"]);
     }
     // The argument that must be text is named, not the picture before it.

@@ -23,14 +23,18 @@ const VERBS: &[Verb] = &[
         inputs: SCENE,
         outputs: &[("-o", "image"), ("--trace", "trace"), ("--checkpoint", "checkpoint")],
     },
-    Verb { arguments: &["bounces", "./scene.ppm", "--size", "8x8"], inputs: SCENE, outputs: &[("--csv", "csv")] },
-    Verb { arguments: &["trace", "run.png"], inputs: &["run.png"], outputs: &[("-o", "output")] },
     Verb {
-        arguments: &["compare", "image.png", "reference.png"],
+        arguments: &["inspect", "bounces", "./scene.ppm", "--size", "8x8"],
+        inputs: SCENE,
+        outputs: &[("--csv", "csv")],
+    },
+    Verb { arguments: &["inspect", "jobs", "run.png"], inputs: &["run.png"], outputs: &[("-o", "output")] },
+    Verb {
+        arguments: &["image", "compare", "image.png", "reference.png"],
         inputs: &["image.png", "reference.png"],
         outputs: &[("--heatmap", "heatmap")],
     },
-    Verb { arguments: &["convert", "image.png"], inputs: &["image.png"], outputs: &[("-o", "output")] },
+    Verb { arguments: &["image", "convert", "image.png"], inputs: &["image.png"], outputs: &[("-o", "output")] },
 ];
 
 const BASE: &str = r#"about = "a base"
@@ -103,7 +107,7 @@ fn no_output_is_an_input() {
         for (input, spellings) in spelled.iter().filter(|(name, _)| inputs.contains(name)) {
             for (option, field) in *outputs {
                 for spelling in spellings {
-                    println!("{} {option} {spelling} for {input}", arguments[0]);
+                    println!("{} {option} {spelling} for {input}", arguments.join(" "));
                     let said = [&*format!("{field} = {spelling}: is "), "would be overwritten"];
                     refused(folder.path(), &[*arguments, &[*option, spelling]].concat(), 2, &said);
                 }
@@ -122,7 +126,7 @@ fn no_two_outputs_are_one_file() {
         for (index, (first, _)) in outputs.iter().enumerate() {
             for (second, field) in &outputs[index + 1..] {
                 for (name, spelling) in spelled.iter().flat_map(|(name, all)| all.iter().map(move |s| (name, s))) {
-                    println!("{} {first} {name} {second} {spelling}", arguments[0]);
+                    println!("{} {first} {name} {second} {spelling}", arguments.join(" "));
                     let both = [first, name, second, &**spelling];
                     let said = [&*format!("{field} = {spelling}: is also the file of")];
                     refused(folder.path(), &[*arguments, &both].concat(), 2, &said);

@@ -30,7 +30,9 @@ fn a_damaged_trace_is_refused_with_its_line() {
     ];
     for (text, place) in cases {
         fs::write(&path, &text).unwrap();
-        for arguments in [&["trace", "run.csv", "-o", "run.svg"][..], &["simulate", "run.csv", "--out", "new"]] {
+        for arguments in
+            [&["inspect", "jobs", "run.csv", "-o", "run.svg"][..], &["simulate", "run.csv", "--out", "new"]]
+        {
             refused(folder.path(), arguments, 2, &[place]);
         }
     }
@@ -69,8 +71,8 @@ fn options_that_make_no_sense_are_refused() {
     for (options, said) in cases {
         refused(folder.path(), &[&["simulate", "run.csv", "--out", "new"][..], options].concat(), 2, said);
     }
-    refused(folder.path(), &["trace", "run.csv", "-o", "run.gif"], 2, &["run.gif", ".svg", ".json"]);
-    refused(folder.path(), &["trace", "none.csv"], 2, &["none.csv"]);
+    refused(folder.path(), &["inspect", "jobs", "run.csv", "-o", "run.gif"], 2, &["run.gif", ".svg", ".json"]);
+    refused(folder.path(), &["inspect", "jobs", "none.csv"], 2, &["none.csv"]);
     refused(folder.path(), &["simulate", "none.csv"], 2, &["none.csv"]);
 }
 
@@ -85,7 +87,7 @@ fn a_trace_that_cannot_be_written_is_refused_at_once() {
 #[test]
 fn references_need_a_deterministic_sampler() {
     let folder = tempfile::tempdir().unwrap();
-    let arguments = ["reference", "cornell", "--spp", "4", "--sampler", "per-thread"];
+    let arguments = ["image", "reference", "cornell", "--spp", "4", "--sampler", "per-thread"];
     refused(folder.path(), &arguments, 2, &["sampler", "per-thread", "independent"]);
 }
 

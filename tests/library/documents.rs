@@ -31,6 +31,24 @@ fn pages_and_lines_are_short() {
     }
 }
 
+/// A release has its number in the manifests, in the changelog and in the citation.
+#[test]
+fn the_version_is_everywhere_the_same() {
+    let version = env!("CARGO_PKG_VERSION");
+    let read = |name: &str| fs::read_to_string(root().join(name)).unwrap();
+    let first = read("CHANGELOG.md").lines().find_map(|line| line.strip_prefix("## ").map(str::to_string)).unwrap();
+    let (number, date) = first.split_once(' ').unwrap();
+    assert_eq!(number, version);
+    let cited = read("CITATION.cff");
+    assert!(cited.contains(&format!("\nversion: {version}\n")), "{cited}");
+    assert!(cited.contains(&format!("\ndate-released: {}\n", date.trim_matches(['(', ')']))), "{cited}");
+    let manifest: toml::Table = read("Cargo.toml").parse().unwrap();
+    let own = manifest["workspace"]["dependencies"].as_table().unwrap().iter();
+    let others: Vec<_> =
+        own.filter(|(name, of)| name.starts_with("pathmark-") && of["version"].as_str() != Some(version)).collect();
+    assert!(others.is_empty(), "{others:?}");
+}
+
 /// The heading as an anchor in a link.
 fn anchor(heading: &str) -> String {
     let kept = heading.chars().filter(|c| c.is_alphanumeric() || *c == ' ' || *c == '-');
@@ -47,7 +65,8 @@ fn links(text: &str) -> Vec<&str> {
 
 #[test]
 fn links_lead_somewhere() {
-    let more = ["README.md", "METHODOLOGY.md", "CONTRIBUTING.md", "results/README.md"].map(|name| root().join(name));
+    let more = ["README.md", "METHODOLOGY.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "results/README.md"]
+        .map(|name| root().join(name));
     for page in pages().into_iter().chain(more) {
         let text = fs::read_to_string(&page).unwrap();
         for link in links(&text) {

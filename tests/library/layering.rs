@@ -191,6 +191,78 @@ fn modules_import_only_those_above() {
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
+/// One of our crates: the folders of its `src`, and the crates that it uses by its manifest.
+struct OwnCrate {
+    folders: BTreeSet<String>,
+    uses: BTreeSet<String>,
+}
+
+/// Our crates by name, without `pathmark-`.
+fn own_crates() -> BTreeMap<String, OwnCrate> {
+    let members = fs::read_dir(root().join("crates")).unwrap().map(|entry| entry.unwrap().path());
+    let homes = members.filter(|home| home.join("Cargo.toml").is_file()).chain([root().to_path_buf()]);
+    let read = |home: PathBuf| {
+        let manifest: toml::Table = fs::read_to_string(home.join("Cargo.toml")).unwrap().parse().unwrap();
+        let used = manifest["dependencies"].as_table().unwrap().keys();
+        let uses = used.filter_map(|name| name.strip_prefix("pathmark-")).map(str::to_string).collect();
+        let inner = fs::read_dir(home.join("src")).unwrap().map(|entry| entry.unwrap().path());
+        let folders = inner.filter(|path| path.is_dir());
+        let folders = folders.map(|path| path.file_name().unwrap().to_str().unwrap().to_string()).collect();
+        let name = manifest["package"]["name"].as_str().unwrap().trim_start_matches("pathmark-").to_string();
+        (name, OwnCrate { folders, uses })
+    };
+    homes.map(read).collect()
+}
+
+/// Whether a crate uses another one, perhaps by way of others.
+fn reaches(crates: &BTreeMap<String, OwnCrate>, from: &str, to: &str) -> bool {
+    crates[from].uses.iter().any(|next| next == to || reaches(crates, next, to))
+}
+
+/// The picture in ARCHITECTURE.md has a box for each crate, with the folders of its `src`, and an arrow for each use that
+/// does not follow from other arrows.
+#[test]
+fn the_picture_is_of_the_code() {
+    let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let (_, picture) = text.split_once("```mermaid\nflowchart TD\n").unwrap();
+    let (picture, _) = picture.split_once("```").unwrap();
+    let (mut boxes, mut arrows) = (BTreeMap::new(), BTreeSet::new());
+    for line in picture.lines().map(str::trim) {
+        if let Some((from, to)) = line.split_once(" --> ") {
+            arrows.insert((from.to_string(), to.to_string()));
+        } else {
+            let (name, label) = line.trim_end_matches("\"]").split_once("[\"").unwrap();
+            let (title, folders) = label.split_once(": ").unwrap_or((label, ""));
+            assert_eq!(title, name);
+            boxes.insert(name.to_string(), folders.to_string());
+        }
+    }
+    let crates = own_crates();
+    let lists = |own: &OwnCrate| own.folders.iter().cloned().collect::<Vec<_>>().join(", ");
+    let mut expected: BTreeMap<_, _> = crates.iter().map(|(name, own)| (name.clone(), lists(own))).collect();
+    expected.insert("pathmark".to_string(), "program and library".to_string());
+    assert_eq!(boxes, expected);
+    let uses = crates.iter().flat_map(|(from, own)| own.uses.iter().map(move |to| (from.clone(), to.clone())));
+    let follows = |from: &str, to: &str| crates[from].uses.iter().any(|next| next != to && reaches(&crates, next, to));
+    assert_eq!(arrows, uses.filter(|(from, to)| !follows(from, to)).collect());
+}
+
+/// The page names files that exist: Rust files below the `src` of some crate, other files below the package.
+#[test]
+fn the_page_names_files_that_exist() {
+    let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    assert!(text.lines().count() <= 100, "one page");
+    let crates = fs::read_dir(root().join("crates")).unwrap().map(|entry| entry.unwrap().path().join("src"));
+    let sources: Vec<PathBuf> = crates.collect();
+    // Every second part between backquotes is code; the picture's fence adds an even number.
+    let names = text.split('`').filter(|part| part.ends_with(".rs") || part.ends_with(".toml"));
+    let names: Vec<&str> = names.filter(|part| !part.contains(char::is_whitespace)).collect();
+    assert!(names.len() > 15, "{names:?}");
+    let exists = |name: &&str| root().join(name).is_file() || sources.iter().any(|source| source.join(name).is_file());
+    let missing: Vec<&&str> = names.iter().filter(|name| !exists(name)).collect();
+    assert!(missing.is_empty(), "{missing:?}");
+}
+
 /// The front page of `cargo doc` has a row for each public module, and for no other.
 #[test]
 fn the_front_page_lists_the_public_modules() {

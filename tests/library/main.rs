@@ -12,6 +12,7 @@ mod energy;
 mod estimate;
 mod estimators;
 mod every_scene;
+mod features;
 mod hard_cases;
 mod image_io;
 mod image_notes;

@@ -24,8 +24,9 @@ const STUMBLED_OVER: &[(&str, &str)] = &[
     ("struct ", "Course"),
 ];
 
-const FOLDERS: &[&str] = &["src", "crates", "tests", "benches", "examples", "experiments", "docs", "assets"];
-const FILES: &[&str] = &["README.md", "METHODOLOGY.md", "CONTRIBUTING.md", "CHANGELOG.md", "results/README.md"];
+const FOLDERS: &[&str] = &["src", "crates", "tests", "benches", "examples", "experiments", "docs"];
+const FILES: &[&str] =
+    &["README.md", "METHODOLOGY.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "results/README.md"];
 const ENDINGS: &[&str] = &["rs", "toml", "md", "js", "css"];
 
 fn texts(path: &Path, found: &mut Vec<PathBuf>) {

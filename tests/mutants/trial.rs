@@ -78,7 +78,7 @@ impl Scratch {
             Killer::Cases(ids) => {
                 build.args(["build", "--quiet", "--bin", "pathmark"]);
                 try_it = limited(&self.target.join("debug/pathmark"));
-                try_it.arg("check").args(ids).arg("--quiet");
+                try_it.arg("selftest").args(ids).arg("--quiet");
             }
             Killer::Tests(program, names) => {
                 build.args(["test", "--quiet", "--workspace", "--no-run"]).args(program);

@@ -94,15 +94,15 @@ fn files_name_the_program_that_made_them() {
     }
     let harness = concat!("(Pathmark ", env!("CARGO_PKG_VERSION"), ")");
     let output =
-        Command::new(&own).args(["run", "tiny.toml", "--against"]).arg(&other).current_dir(folder.path()).output();
+        Command::new(&own).args(["run", "tiny.toml", "--baseline"]).arg(&other).current_dir(folder.path()).output();
     assert!(output.unwrap().status.success());
     let machine =
         |path: &str| -> toml::Table { toml::from_str(&fs::read_to_string(folder.path().join(path)).unwrap()).unwrap() };
     let told = |path: &str| machine(path)["program"].as_str().unwrap().to_string();
     assert_eq!(told("out/tiny/machine.toml"), format!("mypool {harness}"));
-    assert_eq!(told("out/against/tiny/machine.toml"), format!("mypool-before {harness}"));
+    assert_eq!(told("out/baseline/tiny/machine.toml"), format!("mypool-before {harness}"));
     let command = machine("out/tiny/machine.toml")["command"].as_str().unwrap().to_string();
-    assert!(command.starts_with("mypool run tiny.toml --against "), "{command}");
+    assert!(command.starts_with("mypool run tiny.toml --baseline "), "{command}");
     let page = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
     assert!(page.contains(&format!("mypool {harness}")), "{page}");
     // Pathmark itself needs no second name.

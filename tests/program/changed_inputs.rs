@@ -69,7 +69,8 @@ fn inputs_that_change_under_a_sweep_fail_its_rows() {
         prepare(folder, deed);
         let files = ["scene.toml", "base.toml", "mesh.obj"].map(|name| (name, fs::read(folder.join(name)).unwrap()));
         // Valid films of other samples.
-        let reference = ["reference", "scene.toml", "--size", "24x16", "--spp", "80", "--out", "out/references"];
+        let reference =
+            ["image", "reference", "scene.toml", "--size", "24x16", "--spp", "80", "--out", "out/references"];
         finish(pathmark(folder, &reference)).with_code(0);
         for (half, name) in [("half0", "other.film"), ("half1", "unused.film")] {
             let mut films = fs::read_dir(folder.join("out/references")).unwrap().map(|entry| entry.unwrap().path());

@@ -17,9 +17,9 @@ fn blocks(text: &str) -> Vec<(&str, &str)> {
 fn the_commands_of_the_readme_run() {
     const ELSEWHERE: [&str; 5] = [
         "pathmark reproduce",
-        "pathmark check",
+        "pathmark selftest",
         "pathmark run openmp",
-        "pathmark run granularity --against",
+        "pathmark run granularity --baseline",
         "pathmark VERB",
     ];
     let folder = tempfile::tempdir().unwrap();
@@ -37,7 +37,8 @@ fn the_commands_of_the_readme_run() {
             // The check predicts this machine first, which takes fifteen seconds of renders; other tests cover it.
             Some("simulate") => " --no-check",
             Some("price") => " --size 32x24",
-            Some("render" | "replay") if !command.contains("--size") => " --size 128x201",
+            Some("render") if !command.contains("--size") => " --size 128x201",
+            Some("inspect") if command.contains("--pixel") => " --size 128x201",
             _ => "",
         };
         small += more;

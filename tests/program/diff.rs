@@ -1,4 +1,4 @@
-//! `diff` and `run --against`: which cells got slower?
+//! `diff` and `run --baseline`: which cells got slower?
 
 use crate::experiment::{TINY, write_tiny};
 use crate::program::{Finished, finish, pathmark};
@@ -169,32 +169,32 @@ fn repetitions_go_on_until_it_is_known() {
     write_tiny(folder.path(), TINY);
     other_build(folder.path());
     let until = |out: &str, options: &[&str], code: i32| {
-        let all = ["run", "tiny.toml", "--against", "./other", "--out", out];
+        let all = ["run", "tiny.toml", "--baseline", "./other", "--out", out];
         run(folder.path(), &[&all, options].concat(), code)
     };
     let huge = "1000000000%";
     let finished = until("out", &["--until", huge], 0);
     assert!(finished.err.contains("5 of 5 cells decided"), "{}", finished.err);
     assert_eq!(rows(&folder.path().join("out/tiny")).len(), 5 * 11);
-    let compared = ["diff", "out/against/tiny", "out/tiny", "--json", "--fail-above", huge];
+    let compared = ["diff", "out/baseline/tiny", "out/tiny", "--json", "--fail-above", huge];
     let found = json(&run(folder.path(), &compared, 0));
     assert_eq!(found["sequential"], true);
     assert!(found["cells"].as_array().unwrap().iter().all(|cell| cell["change"] == "same"), "{found}");
     // Fewer repetitions decide nothing, and neither does a time limit of zero.
     until("few", &["--until", huge, "--repetitions", "10"], 0);
     assert_eq!(rows(&folder.path().join("few/tiny")).len(), 5 * 10);
-    until("short", &["--until", huge, "--within", "0s"], 0);
+    until("short", &["--until", huge, "--max-time", "0s"], 0);
     assert_eq!(rows(&folder.path().join("short/tiny")).len(), 5);
     for (options, field) in [
         (["--until", "-1%"].as_slice(), "until"),
         (&["--until", "0"], "until"),
         (&["--until", "x"], "until"),
-        (&["--until", "3%", "--within", "soon"], "within"),
+        (&["--until", "3%", "--max-time", "soon"], "max-time"),
     ] {
         let finished = until("new", options, 2);
         assert!(finished.err.contains(field) && !folder.path().join("new").exists(), "{}", finished.err);
     }
-    let alone = run(folder.path(), &["run", "tiny.toml", "--within", "60s"], 2);
+    let alone = run(folder.path(), &["run", "tiny.toml", "--max-time", "60s"], 2);
     assert!(alone.err.contains("--until"), "{}", alone.err);
 }
 
@@ -204,15 +204,15 @@ fn two_builds_are_measured_in_turns() {
     let folder = tempfile::tempdir().unwrap();
     write_tiny(folder.path(), TINY);
     let script = other_build(folder.path());
-    let finished = run(folder.path(), &["run", "tiny.toml", "--against", "./other", "--out", "out"], 0);
+    let finished = run(folder.path(), &["run", "tiny.toml", "--baseline", "./other", "--out", "out"], 0);
     assert!(finished.err.contains("pathmark diff"), "{}", finished.err);
     let rows = |name: &str| rows(&folder.path().join(name));
-    assert_eq!(rows("out/against/tiny"), rows("out/tiny"));
-    let found = run(folder.path(), &["diff", "out/against/tiny", "out/tiny", "--json", "--fail-above", "1000%"], 0);
+    assert_eq!(rows("out/baseline/tiny"), rows("out/tiny"));
+    let found = run(folder.path(), &["diff", "out/baseline/tiny", "out/tiny", "--json", "--fail-above", "1000%"], 0);
     assert_eq!((&json(&found)["paired"], json(&found)["cells"].as_array().unwrap().len()), (&true.into(), 5));
     assert!(!found.err.contains("not measured in turns"));
     // Two sweeps in turns were not measured in turns with each other.
-    run(folder.path(), &["run", "tiny.toml", "--against", "./other", "--out", "next"], 0);
+    run(folder.path(), &["run", "tiny.toml", "--baseline", "./other", "--out", "next"], 0);
     let is_paired = |old: &str, new: &str| {
         let found = run(folder.path(), &["diff", old, new, "--json", "--fail-above", "1000%"], 0);
         let paired = json(&found)["paired"].as_bool().unwrap();
@@ -220,30 +220,32 @@ fn two_builds_are_measured_in_turns() {
         paired
     };
     for (old, new) in
-        [("out/tiny", "next/tiny"), ("out/against/tiny", "next/tiny"), ("out/against/tiny", "next/against/tiny")]
+        [("out/tiny", "next/tiny"), ("out/baseline/tiny", "next/tiny"), ("out/baseline/tiny", "next/baseline/tiny")]
     {
         assert!(!is_paired(old, new), "{old} and {new}");
     }
-    // Older sweeps have no number. Their folders are a pair where the program left them, and nowhere else.
-    for name in ["out", "out/against", "next", "next/against"] {
+    // Older sweeps have no number, and other names. Their folders are a pair where the program left them, and nowhere
+    // else.
+    for name in ["out", "out/baseline", "next", "next/baseline"] {
         let path = folder.path().join(name).join("tiny/machine.toml");
         let text = fs::read_to_string(&path).unwrap();
         let kept: Vec<&str> = text.lines().filter(|line| !line.starts_with("sweep = ")).collect();
         assert_eq!(kept.len() + 1, text.lines().count(), "{text}");
-        fs::write(&path, kept.join("\n")).unwrap();
+        fs::write(&path, kept.join("\n").replace("\nbaseline = ", "\nagainst = ")).unwrap();
     }
+    fs::rename(folder.path().join("out/baseline"), folder.path().join("out/against")).unwrap();
     assert!(is_paired("out/against/tiny", "out/tiny") && is_paired("out/tiny", "out/against/tiny"));
     assert!(!is_paired("out/against/tiny", "next/tiny") && !is_paired("out/tiny", "next/tiny"));
     // The same folder again, and files that are no builds of Pathmark.
-    run(folder.path(), &["run", "tiny.toml", "--against", "./other", "--out", "out"], 2);
+    run(folder.path(), &["run", "tiny.toml", "--baseline", "./other", "--out", "out"], 2);
     for other in ["./nowhere", "tiny.toml", ".", "/bin/true", "/bin/sh"] {
-        let finished = run(folder.path(), &["run", "tiny.toml", "--against", other, "--out", "new"], 2);
-        assert!(finished.err.contains("against") && !folder.path().join("new").exists(), "{}", finished.err);
+        let finished = run(folder.path(), &["run", "tiny.toml", "--baseline", other, "--out", "new"], 2);
+        assert!(finished.err.contains("baseline") && !folder.path().join("new").exists(), "{}", finished.err);
     }
     // A build whose cells fail gives failed rows, and the sweep goes on.
     let fails = format!("[ \"$2\" = --help ] && exec {} \"$@\"\necho hello", cargo_bin!("pathmark").display());
     write_script(&script, &fails);
-    let finished = run(folder.path(), &["run", "tiny.toml", "--against", "./other", "--out", "new"], 1);
+    let finished = run(folder.path(), &["run", "tiny.toml", "--baseline", "./other", "--out", "new"], 1);
     assert!(finished.err.contains("15 of"), "{}", finished.err);
     assert_eq!(rows("new/tiny").len(), 15);
 }

@@ -206,8 +206,8 @@ fn numbers(value: &Value) -> Vec<u64> {
 }
 
 #[test]
-fn replay_prints_the_path() {
-    let path = ["replay", "cornell", "--size", "64x48", "--pixel", "40,38", "--sample", "2", "--seed", "4"];
+fn a_path_is_printed() {
+    let path = ["inspect", "path", "cornell", "--size", "64x48", "--pixel", "40,38", "--sample", "2", "--seed", "4"];
     let json: Value = serde_json::from_str(&run(&[&path[..], &["--json"]].concat(), 0).0).unwrap();
     let scene = Arc::new(load("cornell").unwrap());
     let spec = spec("smallpt", (64, 48), 4);
@@ -230,11 +230,11 @@ fn replay_prints_the_path() {
 #[test]
 fn bounces_are_printed_and_written() {
     let folder = tempfile::tempdir().unwrap();
-    let arguments = ["bounces", "cornell", "--size", "32x24", "--spp", "4", "--csv", "rows.csv"];
+    let arguments = ["inspect", "bounces", "cornell", "--size", "32x24", "--spp", "4", "--csv", "rows.csv"];
     let text = finish(pathmark(folder.path(), &arguments)).with_code(0).out;
     assert!(text.contains("end before 6 bounces"), "{text}");
     let rows = std::fs::read_to_string(folder.path().join("rows.csv")).unwrap();
-    let json: Value = serde_json::from_str(&run(&[&arguments[..6], &["--json"]].concat(), 0).0).unwrap();
+    let json: Value = serde_json::from_str(&run(&[&arguments[..7], &["--json"]].concat(), 0).0).unwrap();
     assert_eq!(rows.lines().count() - 1, json["bounces"].as_array().unwrap().len());
     let scene = Arc::new(load("cornell").unwrap());
     let expected = mean(&scene, &spec("smallpt", (32, 24), 1), 4);
@@ -258,12 +258,12 @@ fn traces_that_cannot_be_replayed_are_refused() {
         (["--pixel", "0,0", "--estimator", "guess"], "estimator = guess"),
         (["--pixel", "0,0", "--seed", "9223372036854775808"], "seed = 9223372036854775808"),
     ] {
-        let error = run(&[&["replay", "cornell"][..], &arguments].concat(), 2).1;
+        let error = run(&[&["inspect", "path", "cornell"][..], &arguments].concat(), 2).1;
         assert!(error.contains(field), "{field}: {error}");
     }
-    let error = run(&["replay", "nowhere", "--pixel", "0,0"], 2).1;
+    let error = run(&["inspect", "path", "nowhere", "--pixel", "0,0"], 2).1;
     assert!(error.contains("scene = nowhere"), "{error}");
-    let error = run(&["bounces", "cornell", "--spp", "3"], 2).1;
+    let error = run(&["inspect", "bounces", "cornell", "--spp", "3"], 2).1;
     assert!(error.contains("spp = 3"), "{error}");
 }
 
@@ -274,7 +274,7 @@ fn rays_are_searched_alone_and_exported() {
     let folder = tempfile::tempdir().unwrap();
     let size = ["--size", "24x16", "--estimator", "bsdf", "--spp", "2", "--repetitions", "2", "--json"];
     let json = |more: &[&str]| -> Value {
-        let arguments = [&["rays", "bumpy-ball:500"][..], &size, more].concat();
+        let arguments = [&["inspect", "rays", "bumpy-ball:500"][..], &size, more].concat();
         serde_json::from_str(&finish(pathmark(folder.path(), &arguments)).with_code(0).out).unwrap()
     };
     let scalar = json(&["--kernel", "scalar", "--export", "rays"]);
@@ -294,7 +294,7 @@ fn rays_are_searched_alone_and_exported() {
     assert!(numbers.into_iter().all(f64::is_finite));
 
     let refused = |arguments: &[&str], told: &str| {
-        let error = finish(pathmark(folder.path(), &[&["rays"][..], arguments].concat())).with_code(2).err;
+        let error = finish(pathmark(folder.path(), &[&["inspect", "rays"][..], arguments].concat())).with_code(2).err;
         assert!(error.contains(told), "{error}");
     };
     refused(&["cornell", "--estimator", "bsdf", "--export", "spheres"], "spheres or planes");
@@ -325,10 +325,11 @@ fn a_told_command_shows_the_invalid_sample_on_every_axis() {
         let base = ["render", "bright.toml", "--spp", "16", "--precision", "f32", "-o", "image.pfm"];
         let size = if axis.contains(&"--size") { vec![] } else { vec!["--size", "32x24"] };
         let render = finish(pathmark(folder.path(), &[&base[..], &size, axis].concat())).with_code(0);
-        let told: Vec<&str> = render.err.lines().filter_map(|line| line.strip_prefix("pathmark replay ")).collect();
+        let told: Vec<&str> =
+            render.err.lines().filter_map(|line| line.strip_prefix("pathmark inspect path ")).collect();
         assert!((1..=10).contains(&told.len()), "{axis:?}: {}", render.err);
         for command in told {
-            let arguments: Vec<&str> = ["replay"].into_iter().chain(command.split(' ')).collect();
+            let arguments: Vec<&str> = ["inspect", "path"].into_iter().chain(command.split(' ')).collect();
             let replay = finish(pathmark(folder.path(), &arguments)).with_code(0);
             assert!(replay.out.contains("This radiance is invalid"), "{command}: {}", replay.out);
             let json = finish(pathmark(folder.path(), &[&arguments[..], &["--json"]].concat())).with_code(0).out;
@@ -341,7 +342,8 @@ fn a_told_command_shows_the_invalid_sample_on_every_axis() {
 /// In f32, a replay shows the radiance that the image gets, but not the path; light by bounces is refused.
 #[test]
 fn single_precision_is_looked_into_as_far_as_it_can_be() {
-    let base = ["replay", "cornell", "--size", "64x48", "--pixel", "40,38", "--seed", "4", "--precision", "f32"];
+    let base =
+        ["inspect", "path", "cornell", "--size", "64x48", "--pixel", "40,38", "--seed", "4", "--precision", "f32"];
     let scene = Arc::new(load("cornell").unwrap());
     let single = Spec { precision: "f32".into(), ..spec("smallpt", (64, 48), 4) };
     let double = spec("smallpt", (64, 48), 4);
@@ -357,11 +359,11 @@ fn single_precision_is_looked_into_as_far_as_it_can_be() {
         assert!(run(&arguments[..arguments.len() - 1], 0).0.contains("SIMD lanes"));
     }
     assert!(others > 0, "f64 gives the same samples");
-    let refused = run(&["bounces", "cornell", "--size", "8x6", "--precision", "f32"], 2).1;
+    let refused = run(&["inspect", "bounces", "cornell", "--size", "8x6", "--precision", "f32"], 2).1;
     assert!(refused.contains("precision = f32") && refused.contains("allowed: f64"), "{refused}");
     // Scenes that lanes do not support are rendered in f64, whatever precision was requested.
-    let fog = ["bounces", "cornell-fog", "--size", "8x6", "--precision", "f32", "--json"];
-    let same = ["bounces", "cornell-fog", "--size", "8x6", "--json"];
+    let fog = ["inspect", "bounces", "cornell-fog", "--size", "8x6", "--precision", "f32", "--json"];
+    let same = ["inspect", "bounces", "cornell-fog", "--size", "8x6", "--json"];
     assert_eq!(run(&fog, 0).0, run(&same, 0).0);
 }
 
@@ -372,7 +374,7 @@ fn infinity_is_told_from_nothing_in_json() {
     let render = ["render", "cornell", "--size", "32x24", "--spp", "4", "-o", "a.pfm", "--json"];
     let record: Value = serde_json::from_str(&finish(pathmark(folder.path(), &render)).with_code(0).out).unwrap();
     assert!(record["rmse"].is_null() && record["mean_radiance"].is_number(), "{record}");
-    let compared = finish(pathmark(folder.path(), &["compare", "a.pfm", "a.pfm", "--json"])).with_code(0).out;
+    let compared = finish(pathmark(folder.path(), &["image", "compare", "a.pfm", "a.pfm", "--json"])).with_code(0).out;
     let compared: Value = serde_json::from_str(&compared).unwrap();
     assert_eq!((&compared["psnr"], &compared["mse"]), (&"inf".into(), &0.0.into()), "{compared}");
 }
@@ -390,7 +392,7 @@ fn a_trace_tells_doubts_about_its_times() {
         let mut header: Value = serde_json::from_str(header.trim_start_matches('#')).unwrap();
         header["warnings"] = warnings.into();
         fs::write(&path, format!("# {header}\n{rows}")).unwrap();
-        finish(pathmark(folder.path(), &["trace", "run.csv"])).with_code(0).err
+        finish(pathmark(folder.path(), &["inspect", "jobs", "run.csv"])).with_code(0).err
     };
     assert!(with("biased;foreign-load(20 %)").contains("foreign-load(20 %)"));
     assert_eq!(with("biased"), "");

@@ -139,8 +139,9 @@ fn a_goal_of_one_part_is_a_goal_of_the_sweep() {
     assert_eq!(goal(&merged("until = \"5%\"\n", "until = \"3%\"\n", false)).as_deref(), Some("3%, 5%"));
     assert_eq!(merged("", "", false).get("uncapped"), Some(&toml::Value::Boolean(true)));
     assert_eq!(merged("", "", true).get("uncapped"), None);
+    // The key has its name in version 0.1, which is still read.
     let pair = |number: u32| format!("against = \"old\"\nsweep = \"{number}\"\n");
-    let found = |table: &toml::Table| (table.contains_key("against"), table.get("sweep").map(ToString::to_string));
+    let found = |table: &toml::Table| (table.contains_key("baseline"), table.get("sweep").map(ToString::to_string));
     let number = found(&merged(&pair(1), &pair(2), false));
     assert!(number.0 && number.1.is_some());
     assert_eq!(found(&merged(&pair(1), &pair(2), false)), number, "the same parts");

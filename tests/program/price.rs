@@ -46,7 +46,7 @@ fn paying_meets_the_prediction() {
             estimator,
             "--sampler",
             sampler,
-            "--pay",
+            "--verify",
             "--pilot-spp",
             "16",
         ]);

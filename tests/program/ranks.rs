@@ -169,20 +169,20 @@ fn options_that_ranks_lack_are_refused() {
 #[test]
 fn message_costs_are_reported() {
     let folder = tempfile::tempdir().unwrap();
-    let alone = finish(pathmark(folder.path(), &["message-costs", "--mpi", "/etc/passwd"])).with_code(2);
+    let alone = finish(pathmark(folder.path(), &["inspect", "messages", "--mpi", "/etc/passwd"])).with_code(2);
     assert!(alone.err.contains("/etc/passwd"), "{}", alone.err);
     if !has_launcher() {
         return;
     }
     let _watchdog = Watchdog::new(Duration::from_mins(2));
-    let found = json(&ranks(folder.path(), 3, &["message-costs", "--json"]).with_code(0).out);
+    let found = json(&ranks(folder.path(), 3, &["inspect", "messages", "--json"]).with_code(0).out);
     let costs = found["costs"].as_array().unwrap();
     assert_eq!((&found["ranks"], costs.len()), (&3.into(), 5));
     for cost in costs {
         let [low, median, high] = ["low_s", "median_s", "high_s"].map(|key| cost[key].as_f64().unwrap());
         assert!(0.0 < low && low <= median && median <= high && high < 10.0, "{cost}");
     }
-    assert!(ranks(folder.path(), 2, &["message-costs"]).with_code(0).out.contains("a fetch-and-op, waits"));
+    assert!(ranks(folder.path(), 2, &["inspect", "messages"]).with_code(0).out.contains("a fetch-and-op, waits"));
 }
 
 /// Ranks that were given another seed, decomposition or rule are refused; a mixed image would be wrong.
@@ -340,6 +340,6 @@ fn processes_are_forecast_from_a_trace() {
     refused(&["--ranks", "work-stealing"], &["ranks", "work-stealing", "working-master"]);
     refused(&["--nodes", "2"], &["--ranks"]);
     refused(&["--ranks", "guided", "--nodes", "0"], &["nodes = 0"]);
-    refused(&["--ranks", "guided", "--messages", "run.csv"], &["messages = run.csv", "message-costs"]);
+    refused(&["--ranks", "guided", "--messages", "run.csv"], &["messages = run.csv", "inspect messages"]);
     refused(&["--ranks", "guided", "--messages", "nowhere.json"], &["nowhere.json"]);
 }

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
 fn halves(folder: &Path) -> [PathBuf; 2] {
-    let reference = ["reference", "cornell", "--spp", "4", "--size", "16x12", "--out", "films", "--quiet"];
+    let reference = ["image", "reference", "cornell", "--spp", "4", "--size", "16x12", "--out", "films", "--quiet"];
     finish(pathmark(folder, &reference)).with_code(0);
     let mut films: Vec<PathBuf> =
         std::fs::read_dir(folder.join("films")).unwrap().map(|film| film.unwrap().path()).collect();
@@ -76,7 +76,7 @@ fn films_of_one_seed_are_not_compared() {
     let folder = tempfile::tempdir().unwrap();
     let [first, second] = halves(folder.path());
     let compared = |image: &Path, reference: &Path| {
-        let arguments = ["compare".as_ref(), image.as_os_str(), reference.as_os_str()];
+        let arguments = ["image".as_ref(), "compare".as_ref(), image.as_os_str(), reference.as_os_str()];
         finish(pathmark(folder.path(), &arguments))
     };
     let fine = compared(&first, &second).with_code(0);
@@ -84,7 +84,7 @@ fn films_of_one_seed_are_not_compared() {
     // A copy under another name, and a film with more samples of the same seed.
     let copy = folder.path().join("copy.film");
     fs::copy(&first, &copy).unwrap();
-    let longer = ["reference", "cornell", "--spp", "16", "--size", "16x12", "--out", "films", "--quiet"];
+    let longer = ["image", "reference", "cornell", "--spp", "16", "--size", "16x12", "--out", "films", "--quiet"];
     let longer = finish(pathmark(folder.path(), &longer)).with_code(0).out;
     for other in [copy, folder.path().join(longer.lines().next().unwrap())] {
         let refused = compared(&first, &other).with_code(2);

@@ -117,9 +117,9 @@ fn who_is_slower_is_left_out() {
     assert!(fastest.len() == 2 && fastest.iter().all(|name| name.ends_with("2t")), "{found}");
     let printed = run(folder.path(), &["rank", "out/tiny"], 0);
     assert!(printed.out.contains("with 95 % confidence, the fastest of them is among: "), "{}", printed.out);
-    let against = env!("CARGO_BIN_EXE_pathmark");
+    let baseline = env!("CARGO_BIN_EXE_pathmark");
     let refused =
-        run(folder.path(), &["run", "tiny.toml", "--until", "order", "--against", against, "--out", "other"], 2);
+        run(folder.path(), &["run", "tiny.toml", "--until", "order", "--baseline", baseline, "--out", "other"], 2);
     assert!(refused.err.contains("order") && refused.err.contains("3%"), "{}", refused.err);
     let part = ["run", "tiny.toml", "--shard", "1/2", "--out", "part"];
     let refused = run(folder.path(), &[&part[..], &["--until", "fastest"]].concat(), 2);
@@ -156,13 +156,17 @@ fn a_matrix_has_fewer_repetitions_than_its_experiment() {
 fn an_experiment_says_until_when() {
     let folder = tempfile::tempdir().unwrap();
     let until = |what: &str| TINY.replacen("repetitions = 3", &format!("repetitions = {what}"), 1);
-    write_tiny(folder.path(), &until(&format!("{{ until = \"{HUGE}\", at-most = 9, within = \"90 min\" }}")));
+    write_tiny(folder.path(), &until(&format!("{{ until = \"{HUGE}\", at-most = 9, max-time = \"90 min\" }}")));
     run(folder.path(), &["run", "tiny.toml"], 0);
     assert_eq!(counts(&folder.path().join("out")), all(8));
+    // The key's name in version 0.1.
+    write_tiny(folder.path(), &until("{ until = \"1 %\", at-most = 9, within = \"0 s\" }"));
+    run(folder.path(), &["run", "tiny.toml", "--out", "old"], 0);
+    assert_eq!(counts(&folder.path().join("old")), all(1));
     for (wrong, said) in [
         ("{ until = \"-1 %\" }", "until"),
         ("{ until = \"0\" }", "until"),
-        ("{ until = \"1 %\", within = \"soon\" }", "within"),
+        ("{ until = \"1 %\", max-time = \"soon\" }", "max-time"),
         ("{ until = \"1 %\", at-most = 0 }", "repetitions"),
         ("{ until = \"1 %\", mood = 1 }", "at-most"),
         ("\"often\"", "at-most"),

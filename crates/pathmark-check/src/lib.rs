@@ -1,4 +1,4 @@
-//! Hard cases: inputs on which careless numerics fail, as a table that both `pathmark check` and the tests run.
+//! Hard cases: inputs on which careless numerics fail, as a table that both `pathmark selftest` and the tests run.
 //!
 //! Each case has the identifier of the catalogue from which its inputs come (a letter for the section and a number)
 //! and states the expected result. The expected value is a closed form, a value computed with more digits, the result

@@ -10,7 +10,7 @@ use crate::lab::Lab;
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser};
 pub use console::Allocator;
-use console::{Talk, watch_memory};
+use console::{Console, watch_memory};
 use pathmark_check as check;
 use pathmark_harness::{
     analysis, atomic_file, cases_file, cluster, error, experiment, files, film, film_file, guard_prices, image_io,
@@ -21,7 +21,7 @@ use std::ffi::OsString;
 use std::io;
 use std::process::ExitCode;
 use std::sync::Arc;
-use verbs::Verb;
+use verbs::{Verb, with_new_names};
 
 /// The most common uses, in five lines.
 const EXAMPLES: &str = "\
@@ -32,12 +32,12 @@ Examples:
   pathmark reproduce                                         run all experiments
   pathmark simulate rows.csv --workers 1..64                 forecast a traced run on more cores
 
-Measure: reproduce, run, rank, diff, price, report, claims, message-costs   Render: render, merge, reference, compare, convert
-Look inside: trace, simulate, replay, bounces, rays    Ask: list, explain, new, check, man, completions";
+Measure: reproduce, run, rank, diff, price, report, claims    Render: render, merge, image
+Look inside: inspect, simulate    Ask: list, new, selftest, shell";
 
 /// A laboratory for scheduling unequal work on many cores, and for what accuracy costs in time.
 #[derive(Parser)]
-#[command(name = "pathmark", version, about, max_term_width = 110, after_help = EXAMPLES)]
+#[command(name = "pathmark", version, max_term_width = 110, after_help = EXAMPLES)]
 struct Cli {
     #[command(subcommand)]
     verb: Verb,
@@ -53,16 +53,16 @@ pub fn main(lab: Lab) -> ExitCode {
         Ok(cli) => cli,
         Err(told) if told.kind() == ErrorKind::InvalidUtf8 => {
             let error = no_text(&mut described());
-            Talk::new(false).error(&error);
+            Console::new(false).error(&error);
             return ExitCode::from(error.exit_code());
         }
         Err(told) => return tell(&told),
     };
-    let talk = Talk::new(cli.quiet);
-    match lab.check().and_then(|()| cli.verb.run(&Arc::new(lab), &talk)) {
+    let console = Console::new(cli.quiet);
+    match lab.check().and_then(|()| cli.verb.run(&Arc::new(lab), &console)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            talk.error(&error);
+            console.error(&error);
             ExitCode::from(error.exit_code())
         }
     }
@@ -72,7 +72,7 @@ pub fn main(lab: Lab) -> ExitCode {
 /// be any bytes, but rows and traces keep the name of a scene or an experiment as text. So an argument is the culprit if
 /// the command line is refused even with text in place of all others that are not text.
 fn no_text(command: &mut clap::Command) -> Error {
-    let arguments: Vec<OsString> = std::env::args_os().collect();
+    let arguments = with_new_names(std::env::args_os());
     let is_text = |argument: &OsString| argument.to_str().is_some();
     let is_refused = |culprit: &usize| {
         let kept =
@@ -91,7 +91,7 @@ fn read_arguments(lab: &Lab) -> std::result::Result<Cli, clap::Error> {
     let [name, version] = lab.program();
     // clap keeps a version for as long as the program runs.
     let mut command = Cli::command().display_name(name).version(&*version.leak());
-    let matches = command.try_get_matches_from_mut(std::env::args_os())?;
+    let matches = command.try_get_matches_from_mut(with_new_names(std::env::args_os()))?;
     Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
 }
 
@@ -100,7 +100,7 @@ fn tell(told: &clap::Error) -> ExitCode {
     match told.print() {
         Err(e) if !told.use_stderr() && e.kind() != io::ErrorKind::BrokenPipe => {
             let error = Error::system("writing", "standard output", e);
-            Talk::new(false).error(&error);
+            Console::new(false).error(&error);
             ExitCode::from(error.exit_code())
         }
         _ => u8::try_from(told.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from),

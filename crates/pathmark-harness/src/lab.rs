@@ -10,7 +10,7 @@ use crate::kernel::workload::{self, WORKLOADS, Workload};
 use crate::kernel::{CustomEstimator, KernelEntry, TABLES, Tables};
 use crate::scene::{CustomScene, Library, Scene};
 use crate::shell;
-use crate::strategy::{Entry as Strategy, STRATEGIES, StrategyError};
+use crate::strategy::{Entry as Strategy, LEFT_OUT, STRATEGIES, StrategyError};
 pub use rank_rule::{Distribution, LOOK, Master, RankRule, is_small};
 use std::fmt;
 use std::panic::Location;
@@ -188,6 +188,10 @@ impl Lab {
             None => (text, None),
         };
         let entry = self.strategies.iter().find(|entry| entry.name == name).copied().ok_or_else(|| {
+            if let Some((_, feature)) = LEFT_OUT.iter().find(|(left_out, _)| *left_out == name) {
+                let allowed = format!("a program built by `cargo run --release --features {feature} -- ...`");
+                return InputError::new("strategy", name, "is missing from this build").allowed(allowed);
+            }
             let names: Vec<&str> = self.strategies.iter().map(|entry| entry.name).collect();
             InputError::new("strategy", name, "there is no strategy of that name").allowed(names.join(", "))
         })?;

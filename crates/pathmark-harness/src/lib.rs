@@ -27,6 +27,6 @@ mod temporary;
 
 pub use lab::Lab;
 pub use pathmark_analysis as analysis;
-pub use pathmark_strategy as strategy;
 pub use pathmark_lanes::{kernel, sampler, simd};
+pub use pathmark_strategy as strategy;
 pub use pathmark_tracer::{digest, effect, error, estimator, film, input, material, math, sampling, scene};

@@ -1,4 +1,4 @@
-//! The price list of the guards: `guards/guards.csv`, which `pathmark check --out` and `reproduce` write.
+//! The price list of the guards: `guards/guards.csv`, which `pathmark selftest --out` and `reproduce` write.
 
 use super::block::Block;
 use super::page::Section;
@@ -16,7 +16,7 @@ const QUESTION: &str = "What does it cost to be right on hard inputs, and how wr
 
 const ANALYSIS: &str = "A guard is extra work that keeps hard inputs correct; on easy inputs a simpler method would do. Both are tried on the same hard inputs against the exact answer, and timed by turns on the same work. \
 A ratio above 1 is what the guard costs in the operation that it guards; in an image it is far less, because an image does much besides. Where the ratio is below 1, being right is also faster.\n\n\
-The simpler variants are not options of the program: a table of hard cases (`pathmark check`) insists that the program passes where they fail.";
+The simpler variants are not options of the program: a table of hard cases (`pathmark selftest`) insists that the program passes where they fail.";
 
 /// The section, if a folder has a price list. Writes its figure and tables beside the list.
 pub(super) fn section(out: &Path) -> Result<Option<Section>> {

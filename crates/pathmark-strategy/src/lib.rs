@@ -65,7 +65,7 @@ pub use error::StrategyError;
 pub use host::Host;
 pub use ledger::{Clock, LearnedRule, Ledger, Seen, Weights};
 pub use panics::Panics;
-pub use strategies::{STRATEGIES, block, find};
+pub use strategies::{LEFT_OUT, STRATEGIES, block, find};
 
 /// The work of a run: a function of the job's index. It is owned, so that workers may exist before it.
 pub type Job = Arc<dyn Fn(usize) + Send + Sync>;

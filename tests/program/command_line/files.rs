@@ -21,7 +21,7 @@ fn every_format_is_read_back() {
             record(folder.path(), "cornell", &["--seed", "3", "-o", "display.png"]);
         }
         let reference = if display { "display.png" } else { "reference.pfm" };
-        let metrics = json(&run(folder.path(), &["compare", &image, reference, "--json"]).out);
+        let metrics = json(&run(folder.path(), &["image", "compare", &image, reference, "--json"]).out);
         let rmse = metrics["rmse"].as_f64().unwrap();
         // The shared exponent of .hdr leaves 8 bits to each channel of values up to 12.
         let allowed = if format == "hdr" { 0.05 } else { 1e-6 };
@@ -63,7 +63,7 @@ fn automatic_exposure_changes_only_the_display() {
 #[test]
 fn a_reference_is_cached_and_a_heat_map_is_drawn() {
     let folder = tempfile::tempdir().unwrap();
-    let reference = ["reference", "cornell", "--size", "24x16", "--spp", "16", "--out", "films"];
+    let reference = ["image", "reference", "cornell", "--size", "24x16", "--spp", "16", "--out", "films"];
     let first = run(folder.path(), &reference).out;
     let films: Vec<&str> = first.lines().take(2).collect();
     let bytes: Vec<_> = films.iter().map(|film| fs::read(folder.path().join(film)).unwrap()).collect();
@@ -74,12 +74,12 @@ fn a_reference_is_cached_and_a_heat_map_is_drawn() {
 
     record(folder.path(), "cornell", &["--seed", "1", "-o", "a.pfm"]);
     record(folder.path(), "cornell", &["--seed", "2", "-o", "b.exr"]);
-    let compared = run(folder.path(), &["compare", "a.pfm", "b.exr", "--heatmap", "map.png"]).out;
+    let compared = run(folder.path(), &["image", "compare", "a.pfm", "b.exr", "--heatmap", "map.png"]).out;
     for metric in names("metrics") {
         assert!(compared.lines().any(|line| line.starts_with(&metric)), "{metric} is not in {compared}");
     }
     assert_png(&folder.path().join("map.png"));
-    let same = json(&run(folder.path(), &["compare", "a.pfm", "a.pfm", "--json"]).out);
+    let same = json(&run(folder.path(), &["image", "compare", "a.pfm", "a.pfm", "--json"]).out);
     assert_eq!(same["rmse"], 0.0);
 }
 
@@ -110,7 +110,7 @@ fn a_pixel_that_is_no_colour_is_named() {
         (&["inf.pfm", "one.pfm", "--json"], "inf.pfm: pixel (1, 0) = (NaN, 1, 1) is not finite, and 1 pixel like it\n"),
     ];
     for (arguments, said) in cases {
-        let finished = finish(pathmark(folder.path(), &[&["compare"], arguments].concat())).with_code(1);
+        let finished = finish(pathmark(folder.path(), &[&["image", "compare"], arguments].concat())).with_code(1);
         assert!(finished.out.contains("mse") && finished.out.contains("NaN"), "{}", finished.out);
         assert!(finished.err.ends_with(said), "{arguments:?}: {}", finished.err);
         if arguments.len() == 2 {
@@ -125,15 +125,15 @@ fn a_pixel_that_is_no_colour_is_named() {
 #[test]
 fn an_image_is_compared_with_both_halves_of_a_reference() {
     let folder = tempfile::tempdir().unwrap();
-    let reference = ["reference", "cornell", "--size", "24x16", "--spp", "64", "--out", "films"];
+    let reference = ["image", "reference", "cornell", "--size", "24x16", "--spp", "64", "--out", "films"];
     let told = run(folder.path(), &reference).out;
     let films: Vec<&str> = told.lines().take(2).collect();
     record(folder.path(), "cornell", &["-o", "a.pfm"]);
-    let compared = json(&run(folder.path(), &["compare", "a.pfm", films[0], films[1], "--json"]).out);
+    let compared = json(&run(folder.path(), &["image", "compare", "a.pfm", films[0], films[1], "--json"]).out);
     let number = |name: &str| compared[name].as_f64().unwrap();
     let read = |name: &str| ::pathmark::image_io::read(&folder.path().join(name)).unwrap();
     for (film, image) in films.iter().zip(["first.pfm", "second.pfm"]) {
-        run(folder.path(), &["convert", film, "-o", image]);
+        run(folder.path(), &["image", "convert", film, "-o", image]);
     }
     let [image, first, second] = ["a.pfm", "first.pfm", "second.pfm"].map(read);
     // A picture file has fewer digits than a film.
@@ -145,9 +145,9 @@ fn an_image_is_compared_with_both_halves_of_a_reference() {
         assert!((root * root / square - 1.0).abs() < 1e-9, "{compared}");
     }
     // The plain form includes the noise of the reference; the cross form does not.
-    let plain = json(&run(folder.path(), &["compare", "a.pfm", films[0], "--json"]).out);
+    let plain = json(&run(folder.path(), &["image", "compare", "a.pfm", films[0], "--json"]).out);
     assert!(plain["mse"].as_f64().unwrap() > number("mse"), "{plain}");
-    let same = finish(pathmark(folder.path(), &["compare", "a.pfm", films[0], films[0]])).with_code(2);
+    let same = finish(pathmark(folder.path(), &["image", "compare", "a.pfm", films[0], films[0]])).with_code(2);
     assert!(same.err.contains("seed of both"), "{}", same.err);
 }
 
@@ -158,7 +158,7 @@ fn a_heat_map_has_the_scale_that_was_asked_for() {
     record(folder.path(), "cornell", &["--seed", "1", "-o", "a.pfm"]);
     record(folder.path(), "cornell", &["--seed", "2", "-o", "b.pfm"]);
     let light = |scale: &str| {
-        let map = ["compare", "a.pfm", "b.pfm", "--heatmap", "map.png", "--scale", scale];
+        let map = ["image", "compare", "a.pfm", "b.pfm", "--heatmap", "map.png", "--scale", scale];
         assert!(run(folder.path(), &map).out.contains(&format!("from 0 (dark) to {scale}000 (light)")));
         let image = ::pathmark::image_io::read(&folder.path().join("map.png")).unwrap();
         image.pixels.as_flattened().iter().sum::<f64>()
@@ -222,22 +222,25 @@ fn pictures_name_their_scene_and_settings() {
         run(folder.path(), &["render", "cornell", "--size", "16x12", "--spp", "4", "--seed", seed, "-o", output]);
     }
     let shared = "seed 1 is the seed of both";
-    assert!(run(folder.path(), &["compare", "a.png", "b.exr"]).out.contains(shared));
-    assert!(!run(folder.path(), &["compare", "a.png", "c.png"]).out.contains("is the seed of both"));
+    assert!(run(folder.path(), &["image", "compare", "a.png", "b.exr"]).out.contains(shared));
+    assert!(!run(folder.path(), &["image", "compare", "a.png", "c.png"]).out.contains("is the seed of both"));
     for (other, shares) in [("b.exr", true), ("c.png", false)] {
-        assert_eq!(json(&run(folder.path(), &["compare", "a.png", other, "--json"]).out)["shares_samples"], shares);
+        assert_eq!(
+            json(&run(folder.path(), &["image", "compare", "a.png", other, "--json"]).out)["shares_samples"],
+            shares
+        );
     }
     // A converted image keeps its notes, unless its format has none.
-    run(folder.path(), &["convert", "a.png", "-o", "d.exr"]);
-    assert!(run(folder.path(), &["compare", "d.exr", "b.exr"]).out.contains(shared));
-    run(folder.path(), &["convert", "a.png", "-o", "e.ppm"]);
-    assert!(!run(folder.path(), &["compare", "e.ppm", "b.exr"]).out.contains("is the seed of both"));
+    run(folder.path(), &["image", "convert", "a.png", "-o", "d.exr"]);
+    assert!(run(folder.path(), &["image", "compare", "d.exr", "b.exr"]).out.contains(shared));
+    run(folder.path(), &["image", "convert", "a.png", "-o", "e.ppm"]);
+    assert!(!run(folder.path(), &["image", "compare", "e.ppm", "b.exr"]).out.contains("is the seed of both"));
     let notes = std::fs::read(folder.path().join("a.png")).unwrap();
     let text = String::from_utf8_lossy(&notes);
     for part in ["pathmark.film", "\"scene\":\"cornell\"", "\"spp\":4", "pathmark.checksum", "Software"] {
         assert!(text.contains(part), "{part}");
     }
-    let flip = run(folder.path(), &["compare", "a.png", "c.png", "--flip", "flip.png"]).out;
+    let flip = run(folder.path(), &["image", "compare", "a.png", "c.png", "--flip", "flip.png"]).out;
     assert!(flip.contains("flip.png: from 0 (dark) to 1.0000 (light)"), "{flip}");
     assert!(folder.path().join("flip.png").is_file());
 }

@@ -1,12 +1,12 @@
 //! The command line works as its help says: every name that `list` prints runs as it is, and verbs read each other's
 //! files.
 
-mod check;
 mod files;
 mod names;
 mod rounds;
 mod scenes;
 mod schedules;
+mod selftest;
 mod shards;
 
 use crate::experiment::{TINY, write_tiny};
@@ -47,7 +47,7 @@ fn quiet_is_quiet_and_talk_goes_to_stderr() {
     write_tiny(folder.path(), TINY);
     let render = ["render", "cornell", "--size", "8x8", "--spp", "4"];
     let sweep = ["run", "tiny.toml", "--out", "out"];
-    let reference = ["reference", "cornell", "--size", "8x8", "--spp", "4"];
+    let reference = ["image", "reference", "cornell", "--size", "8x8", "--spp", "4"];
     for arguments in [render.as_slice(), &sweep, &reference] {
         let finished = run(folder.path(), &[arguments, &["--quiet"]].concat());
         assert_eq!(finished.err, "", "{arguments:?}");
@@ -60,23 +60,31 @@ fn quiet_is_quiet_and_talk_goes_to_stderr() {
     assert!(finished.err.contains("tiny") && finished.out.lines().count() == 1, "{}{}", finished.err, finished.out);
 }
 
+/// The first line of the help is about the program, not about one of its crates.
+#[test]
+fn the_help_begins_with_the_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let help = run(folder.path(), &["--help"]).out;
+    assert!(help.starts_with("A laboratory for scheduling unequal work on many cores"), "{help}");
+}
+
 /// A script for each shell names the verbs, and a manual page has a head and the options.
 #[test]
 fn completions_and_manual_pages_know_verbs_and_options() {
     let folder = tempfile::tempdir().unwrap();
     for shell in ["bash", "zsh", "fish"] {
-        let script = run(folder.path(), &["completions", shell]).out;
+        let script = run(folder.path(), &["shell", "completions", shell]).out;
         assert!(
             ["reproduce", "thread-scaling", "estimator"].iter().filter(|word| script.contains(**word)).count() >= 2
         );
     }
-    let page = run(folder.path(), &["man"]).out;
+    let page = run(folder.path(), &["shell", "man"]).out;
     assert!(
         page.contains(".TH pathmark") && page.contains("reproduce") && !page.contains("One cell of a sweep"),
         "{page}"
     );
-    let page = run(folder.path(), &["man", "render"]).out;
+    let page = run(folder.path(), &["shell", "man", "render"]).out;
     assert!(page.contains("pathmark render") && page.contains("\\-\\-spp"), "{page}");
-    let refused = finish(pathmark(folder.path(), &["man", "rendr"])).with_code(2);
+    let refused = finish(pathmark(folder.path(), &["shell", "man", "rendr"])).with_code(2);
     assert!(refused.err.contains("did you mean render?"), "{}", refused.err);
 }

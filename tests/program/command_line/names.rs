@@ -80,12 +80,45 @@ const COLUMNS: [&str; 39] = [
 #[test]
 fn warnings_are_explained_as_rows_have_them() {
     let folder = tempfile::tempdir().unwrap();
-    let all = run(folder.path(), &["explain"]).out;
-    for name in names("warnings") {
-        assert!(all.lines().any(|line| line == name), "{name}");
-        let alone = run(folder.path(), &["explain", &format!("{name}(25 %)")]).out;
-        assert!(alone.starts_with(&name) && all.contains(alone.trim_end()), "{name}: {alone}");
-        assert_eq!(alone.trim_end().lines().count(), 3, "{name}: its name, its meaning and what to do");
+    let all = json(&run(folder.path(), &["list", "warnings", "--json"]).out);
+    for entry in all.as_array().unwrap() {
+        let [name, about, advice] = ["name", "about", "advice"].map(|key| entry[key].as_str().unwrap());
+        let alone = run(folder.path(), &["list", "warnings", &format!("{name}(25 %)")]).out;
+        let lines: Vec<&str> = alone.lines().map(str::trim).collect();
+        assert_eq!(lines, [&format!("{name}  {about}"), advice], "its name, its meaning and what to do");
+    }
+}
+
+/// Names of version 0.1 mean what today's names mean.
+#[test]
+fn old_names_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    for (old, new) in [
+        ("bounces", "inspect bounces"),
+        ("check", "selftest"),
+        ("compare", "image compare"),
+        ("completions", "shell completions"),
+        ("convert", "image convert"),
+        ("explain", "list"),
+        ("man", "shell man"),
+        ("message-costs", "inspect messages"),
+        ("rays", "inspect rays"),
+        ("reference", "image reference"),
+        ("replay", "inspect path"),
+        ("trace", "inspect jobs"),
+    ] {
+        let new: Vec<&str> = ["--quiet"].into_iter().chain(new.split(' ')).chain(["--help"]).collect();
+        assert_eq!(run(folder.path(), &["--quiet", old, "--help"]).out, run(folder.path(), &new).out, "{old}");
+    }
+    assert!(run(folder.path(), &["explain", "drift"]).out.trim_start().starts_with("drift  "));
+    // These options are read: the error names the value under today's name.
+    for (old, said) in [
+        (&["run", "granularity", "--against", "nowhere"][..], "baseline = nowhere"),
+        (&["run", "granularity", "--until", "3%", "--within", "soon"], "max-time = soon"),
+        (&["price", "cornell", "--rmse", "0", "--pay"], "rmse = 0"),
+    ] {
+        let refused = finish(pathmark(folder.path(), old)).with_code(2);
+        assert!(refused.err.contains(said), "{old:?}: {}", refused.err);
     }
 }
 

@@ -196,7 +196,7 @@ fn a_damaged_checkpoint_is_refused_and_kept() {
 fn a_reference_is_refined_and_extended() {
     let folder = tempfile::tempdir().unwrap();
     let reference = |options: &[&str]| {
-        let finished = run(folder.path(), &[&["reference", "cornell", "--size", "24x16"], options].concat());
+        let finished = run(folder.path(), &[&["image", "reference", "cornell", "--size", "24x16"], options].concat());
         let films: Vec<String> = finished.out.lines().take(2).map(str::to_string).collect();
         let (by_variance, by_difference) = finished.out.trim_end().rsplit_once(" by variance, ").unwrap();
         let number = |text: &str| text.split(' ').next_back().unwrap().parse::<f64>().unwrap();
@@ -221,7 +221,7 @@ fn a_reference_is_refined_and_extended() {
         assert!(found != expected && bytes(found) == bytes(expected), "{found}");
     }
     for options in [["--until", "0"], ["--until", "NaN"]] {
-        let arguments = [&["reference", "cornell", "--out", "none"], options.as_slice()].concat();
+        let arguments = [&["image", "reference", "cornell", "--out", "none"], options.as_slice()].concat();
         assert!(finish(pathmark(folder.path(), &arguments)).with_code(2).err.contains("until"));
     }
     assert!(!folder.path().join("none").exists());

@@ -34,14 +34,14 @@ fn a_trace_has_a_row_for_each_job_and_can_be_drawn() {
     let makespan = header["makespan_s"].as_f64().unwrap();
     assert!(column(2).iter().zip(column(3)).all(|(start, stop)| 0.0 <= *start && *start < stop && stop <= makespan));
 
-    let said = run(folder.path(), &["trace", "run.csv", "-o", "run.svg"]).out;
+    let said = run(folder.path(), &["inspect", "jobs", "run.csv", "-o", "run.svg"]).out;
     assert!(said.contains("6 jobs on 2 workers"), "{said}");
     assert!(fs::read_to_string(folder.path().join("run.svg")).unwrap().contains("static-cyclic"));
-    run(folder.path(), &["trace", "run.csv", "-o", "run.json"]);
+    run(folder.path(), &["inspect", "jobs", "run.csv", "-o", "run.json"]);
     let events = json(&fs::read_to_string(folder.path().join("run.json")).unwrap());
     let complete = events["traceEvents"].as_array().unwrap().iter().filter(|event| event["ph"] == "X").count();
     assert_eq!(complete, 6);
-    run(folder.path(), &["trace", "run.csv", "-o", "run.png"]);
+    run(folder.path(), &["inspect", "jobs", "run.csv", "-o", "run.png"]);
 }
 
 /// Asserts that a chart has a line, or a part of one, for each of these names.

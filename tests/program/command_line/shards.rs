@@ -36,10 +36,10 @@ fn parts_are_merged_into_the_image() {
         assert!(read("whole.exr") == read("at-once.exr"), "{by}");
         // A film can be compared and converted.
         run(folder.path(), &[&["merge"], names.as_slice(), &["-o", "whole.film"]].concat());
-        run(folder.path(), &["convert", "whole.film", "-o", "again.exr"]);
+        run(folder.path(), &["image", "convert", "whole.film", "-o", "again.exr"]);
         assert!(read("again.exr") == read("at-once.exr"), "{by}");
         // A part cannot, and the message names the command for parts.
-        let part = finish(pathmark(folder.path(), &["compare", names[0], "whole.exr"])).with_code(2);
+        let part = finish(pathmark(folder.path(), &["image", "compare", names[0], "whole.exr"])).with_code(2);
         assert!(part.err.contains("film = part-1-of-3.film") && part.err.contains("merge"), "{}", part.err);
         // One part is missing.
         let two = [&["merge"], &names[..2], &["-o", "two.png"]].concat();

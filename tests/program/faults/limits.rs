@@ -180,11 +180,11 @@ fn too_little_memory_is_the_systems_fault() {
         &["render", "cornell", "--size", "128x96", "--spp", "4", "-o", "b.exr", "--output", "channel-pixel"],
         &["render", "spheres:2000", "--size", "16x12", "--spp", "16", "-o", "b.pfm", "--checkpoint", "b.film"],
         &["render", "cornell", "--size", "2x64", "--spp", "4", "--strategy", "thread-per-row", "-o", "b.pfm"],
-        &["reference", "cornell", "--size", "64x48", "--spp", "16", "--out", "references"],
-        &["compare", "a.exr", "a.exr", "--heatmap", "b.png"],
-        &["bounces", "cornell", "--size", "16x12"],
-        &["trace", "run.csv", "-o", "run.png"],
-        &["check", "S11"],
+        &["image", "reference", "cornell", "--size", "64x48", "--spp", "16", "--out", "references"],
+        &["image", "compare", "a.exr", "a.exr", "--heatmap", "b.png"],
+        &["inspect", "bounces", "cornell", "--size", "16x12"],
+        &["inspect", "jobs", "run.csv", "-o", "run.png"],
+        &["selftest", "S11"],
     ];
     for more in [0, 1, 2, 3, 4, 6, 8, 11, 16, 23, 32, 64] {
         for arguments in commands {

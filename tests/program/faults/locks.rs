@@ -68,7 +68,7 @@ fn two_renders_do_not_share_a_checkpoint() {
 fn two_processes_do_not_render_into_one_folder_of_references() {
     let _watchdog = Watchdog::new(Duration::from_mins(2));
     let folder = tempfile::tempdir().unwrap();
-    let reference = |spp| ["reference", "cornell", "--size", "64x48", "--out", "references", "--spp", spp];
+    let reference = |spp| ["image", "reference", "cornell", "--size", "64x48", "--out", "references", "--spp", spp];
     fs::create_dir(folder.path().join("references")).unwrap();
     fs::write(folder.path().join("references/.lock"), "the user's").unwrap();
     let first = running(folder.path(), &reference("4000000"), "references/.pathmark.lock");
@@ -108,7 +108,7 @@ fn reproduce_shares_its_folder_with_nobody() {
         assert!(second.err.contains("is being written by another process"), "{}", second.err);
     }
     refused(&run);
-    refused(&["check", "--out", "out"]);
+    refused(&["selftest", "--out", "out"]);
     assert!(!out.join("earlier").exists());
     end(first);
     // An empty folder that another process shares to run an experiment.

@@ -112,8 +112,8 @@ fn commands_that_need_threads_say_so_and_the_others_go_on() {
     finish(pathmark(public.folder(), &trace)).with_code(0);
     let files = public.files();
     let refused: [&[&str]; 5] = [
-        &["check", "S11", "P01"],
-        &["reference", "cornell", "--size", "16x12", "--spp", "16", "--out", "."],
+        &["selftest", "S11", "P01"],
+        &["image", "reference", "cornell", "--size", "16x12", "--spp", "16", "--out", "."],
         &["price", "cornell", "--size", "16x12", "--rmse", "0.1"],
         &["simulate", "run.csv", "--out", "."],
         &["render", "cornell", "--size", "16x12", "--spp", "64", "--adaptive", "-o", "b.pfm"],
@@ -126,10 +126,10 @@ fn commands_that_need_threads_say_so_and_the_others_go_on() {
     }
     let fine: [&[&str]; 5] = [
         &["list"],
-        &["trace", "run.csv"],
-        &["compare", "a.pfm", "a.pfm"],
-        &["bounces", "cornell", "--size", "16x12"],
-        &["replay", "cornell", "--size", "16x12", "--pixel", "3,4"],
+        &["inspect", "jobs", "run.csv"],
+        &["image", "compare", "a.pfm", "a.pfm"],
+        &["inspect", "bounces", "cornell", "--size", "16x12"],
+        &["inspect", "path", "cornell", "--size", "16x12", "--pixel", "3,4"],
     ];
     for arguments in fine {
         watchdog.now(arguments.join(" "));

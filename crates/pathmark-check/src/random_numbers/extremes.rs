@@ -1,13 +1,13 @@
 //! The ends of [0, 1) through every consumer of random numbers: R09, R11.
 
 use super::first;
-use crate::samplers::keyed;
-use crate::stage::{DIFFUSE, named, scene, sphere};
-use crate::{Case, Trials};
 use crate::estimator::{AnyEstimator, ESTIMATORS, Options, Probe, any_estimator, camera_ray};
 use crate::math::{Ray, Rgb, dot};
+use crate::samplers::keyed;
 use crate::sampling::{Address, Independent, Purpose, SampleKey, Sampler, concentric_disk, mix, tent, unit};
 use crate::scene::{AllEffects, CAMERA_EXAMPLES, Fog, SCENES, Scan, Scene, SurfaceOrigin, accelerator, load};
+use crate::stage::{DIFFUSE, named, scene, sphere};
+use crate::{Case, Trials};
 
 pub(super) const CASES: &[Case] = &[
     Case { id: "R09", tries: "0 and 1 - 2^-53 through every camera, material, light and estimator", run: consumers },

@@ -1,10 +1,10 @@
 //! Use of random numbers: each address at most once in a sample: R13.
 
-use crate::samplers::keyed;
-use crate::{Case, Trials};
 use crate::estimator::{AnyEstimator, ESTIMATORS, Options, any_estimator, camera_ray, extra_camera_rays};
+use crate::samplers::keyed;
 use crate::sampling::{Address, SampleKey, Sampler};
 use crate::scene::{AllEffects, SCENES, Scan, Scene, accelerator, load};
+use crate::{Case, Trials};
 use std::collections::HashSet;
 use std::sync::{Mutex, PoisonError};
 

@@ -2,14 +2,14 @@
 
 use super::unguarded::{SMALLPT_EPSILON, smallpt_first_root};
 use crate::bare_scene::{intersect, searches};
-use crate::random::Random;
-use crate::rendering::{by_kernel, render};
-use crate::stage::{DIFFUSE, camera, named, try_scene};
-use crate::{Case, Trials};
 use crate::estimator::ESTIMATORS;
 use crate::kernel::Spec;
 use crate::math::{Ray, Vec3};
+use crate::random::Random;
+use crate::rendering::{by_kernel, render};
 use crate::scene::{Scene, SurfaceOrigin, load};
+use crate::stage::{DIFFUSE, camera, named, try_scene};
+use crate::{Case, Trials};
 use std::sync::Arc;
 
 pub(super) const CASES: &[Case] = &[

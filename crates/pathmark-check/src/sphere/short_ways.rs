@@ -4,11 +4,11 @@ use super::exact::U;
 use super::unguarded::{SMALLPT_EPSILON, smallpt_first_root};
 use super::walk::scatter;
 use crate::bare_scene::{intersect, searches};
+use crate::math::{Frame, Ray, Vec3};
 use crate::random::Random;
+use crate::scene::{Scene, SurfaceOrigin};
 use crate::stage::{ANY_CAMERA, DIFFUSE, GLASS, ball, try_scene};
 use crate::{Case, Trials};
-use crate::math::{Frame, Ray, Vec3};
-use crate::scene::{Scene, SurfaceOrigin};
 use std::f64::consts::TAU;
 
 pub(super) const CASES: &[Case] = &[

@@ -2,10 +2,10 @@
 //! degrees, so an error e in a distance moves the edge between them by 33 e.
 
 use crate::bare_scene::{intersect, searches};
-use crate::random::Random;
-use crate::{Case, Trials};
 use crate::math::{Frame, Ray, Vec3, dot};
+use crate::random::Random;
 use crate::scene::{AllEffects, Hit, Scene, SurfaceOrigin, load};
+use crate::{Case, Trials};
 use std::f64::consts::TAU;
 
 pub(super) const CASES: &[Case] = &[

@@ -2,11 +2,11 @@
 
 use super::exact::U;
 use crate::bare_scene::{intersect, scene_of, scene_of_spheres, searches};
+use crate::math::{Ray, Vec3, dot};
 use crate::meshes::star;
 use crate::random::Random;
-use crate::{Case, Trials};
-use crate::math::{Ray, Vec3, dot};
 use crate::scene::{Plane, Primitives, Scene, Sphere, SurfaceOrigin, Triangle};
+use crate::{Case, Trials};
 use std::collections::BTreeMap;
 
 pub(super) const CASES: &[Case] = &[

@@ -3,15 +3,15 @@
 use super::single::U;
 use crate::analysis::z_test::{critical_value, sidak};
 use crate::bare_scene::{intersect, searches};
-use crate::exact::mean;
-use crate::random::Random;
-use crate::rendering::{by_kernel, render};
-use crate::stage::{ball, camera, named, try_scene};
-use crate::{Case, Trials};
 use crate::estimator::ESTIMATORS;
+use crate::exact::mean;
 use crate::kernel::{KERNELS, Spec};
 use crate::math::{Ray, Vec3, dot};
+use crate::random::Random;
+use crate::rendering::{by_kernel, render};
 use crate::scene::{Scene, SurfaceOrigin};
+use crate::stage::{ball, camera, named, try_scene};
+use crate::{Case, Trials};
 use std::f64::consts::PI;
 use std::sync::Arc;
 

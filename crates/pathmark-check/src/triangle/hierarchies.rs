@@ -1,11 +1,11 @@
 //! Hierarchies compared with testing every primitive: the same primitive and the same bits of distance.
 
 use crate::bare_scene::{intersect, scene_of, searches};
+use crate::math::{Ray, Vec3, dot};
 use crate::meshes::{grid_cube, star};
 use crate::random::Random;
-use crate::{Case, Trials};
-use crate::math::{Ray, Vec3, dot};
 use crate::scene::{Hit, Plane, Primitives, Scene, Sphere, SurfaceOrigin, Triangle};
+use crate::{Case, Trials};
 
 pub(super) const CASES: &[Case] = &[Case {
     id: "T13",

@@ -2,12 +2,12 @@
 
 use super::single::U;
 use crate::bare_scene::{intersect, scene_of, searches};
+use crate::math::{Frame, Ray, Vec3, dot};
 use crate::random::Random;
 use crate::refusals::refuses_shape;
+use crate::scene::{Plane, Primitive, Primitives, Scene, SurfaceOrigin};
 use crate::stage::{ANY_CAMERA, DIFFUSE, named, try_scene};
 use crate::{Case, Trials};
-use crate::math::{Frame, Ray, Vec3, dot};
-use crate::scene::{Plane, Primitive, Primitives, Scene, SurfaceOrigin};
 
 pub(super) const CASES: &[Case] = &[
     Case { id: "T16", tries: "planes met at cosines down to 1e-90, from both sides", run: flat_angles },

@@ -4,14 +4,14 @@
 use super::single::{scene, towards};
 use crate::bare_scene::{intersect, searches};
 use crate::image_mean::{self, Moments};
-use crate::meshes::icosphere;
-use crate::random::Random;
-use crate::stage::{self, GLASS, camera, diffuse, object, plane, quad};
-use crate::{Case, Trials};
 use crate::kernel::Spec;
 use crate::math::{Frame, Ray, Vec3};
+use crate::meshes::icosphere;
+use crate::random::Random;
 use crate::scene::{Primitive, Primitives, Scene, SurfaceOrigin, Triangle};
 use crate::simd::Precision;
+use crate::stage::{self, GLASS, camera, diffuse, object, plane, quad};
+use crate::{Case, Trials};
 
 pub(super) const CASES: &[Case] = &[
     Case {

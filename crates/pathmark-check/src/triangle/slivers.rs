@@ -5,13 +5,13 @@ use super::hierarchies::in_cube;
 use super::single::towards;
 use crate::bare_scene::{intersect, scene_of, searches};
 use crate::image_mean;
-use crate::random::Random;
-use crate::stage::{self, diffuse, object, quad, view};
-use crate::{Case, Trials};
 use crate::kernel::{KERNELS, Spec};
 use crate::math::{Ray, Vec3, dot};
+use crate::random::Random;
 use crate::scene::{ACCELERATORS, Hit, Primitives, Scene, Sphere, SurfaceOrigin, Triangle};
 use crate::simd::Precision;
+use crate::stage::{self, diffuse, object, quad, view};
+use crate::{Case, Trials};
 
 pub(super) const CASES: &[Case] = &[
     Case {

@@ -6,4 +6,4 @@ mod progress;
 
 pub use out_of_memory::Allocator;
 pub(crate) use out_of_memory::watch as watch_memory;
-pub(crate) use progress::Talk;
+pub(crate) use progress::Console;

@@ -16,7 +16,7 @@ const BUSY: &str = "{spinner} {msg}  {elapsed}";
 const TICK: Duration = Duration::from_millis(100);
 
 /// The messages of the program on standard error.
-pub(crate) struct Talk {
+pub(crate) struct Console {
     quiet: bool,
     terminal: bool,
     work: Mutex<Work>,
@@ -36,7 +36,7 @@ struct Work {
     told: u64,
 }
 
-impl Talk {
+impl Console {
     pub(crate) fn new(quiet: bool) -> Self {
         Self { quiet, terminal: std::io::stderr().is_terminal(), work: Mutex::new(Work::default()) }
     }
@@ -57,7 +57,7 @@ impl Talk {
     }
 }
 
-impl Talk {
+impl Console {
     /// Runs work of unknown length; a terminal shows its title and the elapsed time meanwhile.
     pub(crate) fn busy<T>(&self, title: &str, work: impl FnOnce() -> T) -> T {
         if self.quiet || !self.terminal {
@@ -110,7 +110,7 @@ impl Talk {
     }
 }
 
-impl Progress for Talk {
+impl Progress for Console {
     fn begin(&self, title: &str, total: u64) {
         self.start(title, total, BY_PACE);
     }

@@ -1,4 +1,4 @@
-//! Hard cases: tries them as evidence for claims, for `check` and `reproduce`.
+//! Hard cases: tries them as evidence for claims, for `selftest` and `reproduce`.
 
 use crate::cases_file::{self, CaseRow};
 use crate::check::{self, Case, Effort, Outcome, case_row};
@@ -8,10 +8,10 @@ use crate::measure::available_threads;
 use std::path::Path;
 
 /// Tries cases on all processors.
-pub(super) fn try_all(cases: &[&'static Case], effort: Effort, talk: &dyn Progress) -> Result<Vec<Outcome>> {
-    talk.begin("hard cases", cases.len() as u64);
-    let outcomes = check::run(cases, effort, available_threads(), &|done| talk.advance(done))?;
-    talk.end();
+pub(super) fn try_all(cases: &[&'static Case], effort: Effort, console: &dyn Progress) -> Result<Vec<Outcome>> {
+    console.begin("hard cases", cases.len() as u64);
+    let outcomes = check::run(cases, effort, available_threads(), &|done| console.advance(done))?;
+    console.end();
     Ok(outcomes)
 }
 

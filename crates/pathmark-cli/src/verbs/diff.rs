@@ -1,7 +1,7 @@
 //! `pathmark diff OLD NEW`: which cells got slower, and which are lost?
 
-use super::run::talk_of;
-use crate::console::Talk;
+use super::run::note_doubts;
+use crate::console::Console;
 use crate::console::output::{counted, number, print, print_json};
 use crate::error::{Error, Result, printable};
 use crate::experiment::{
@@ -58,10 +58,10 @@ enum Undecided {
 /// The largest number of lost cells that an error names; the table names all.
 const MOST_TOLD: usize = 20;
 
-pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let limit = parse_share("fail-above", &arguments.fail_above)?;
     if arguments.counts {
-        return counts(arguments, limit, talk);
+        return counts(arguments, limit, console);
     }
     let AcrossOptions { across_machines: machines, across_revisions: revisions } = arguments.across;
     let across = Across { machines, revisions };
@@ -78,9 +78,9 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         print(&format!("{}; the limit between same and slower is {percent} %", counts.join(", ")))?;
     }
     for (name, diff) in &found.experiments {
-        remark(name, diff, talk);
+        remark(name, diff, console);
     }
-    let mut problems = losses(&found, |diff| &diff.lost, talk);
+    let mut problems = losses(&found, |diff| &diff.lost, console);
     let (slower, undecided) = (count(Change::Slower), count(Change::Undecided));
     if slower > 0 {
         problems.push(format!("{} got slower by more than {} %", counted(slower, "cell"), 100.0 * limit));
@@ -92,7 +92,7 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
 }
 
 /// Compares counts instead of times.
-fn counts(arguments: &Arguments, limit: f64, talk: &Talk) -> Result<()> {
+fn counts(arguments: &Arguments, limit: f64, console: &Console) -> Result<()> {
     let found = count_diff(&arguments.old, &arguments.new)?;
     let all = || found.experiments.iter().flat_map(|(_, diffs)| &diffs.changed);
     if arguments.json {
@@ -110,7 +110,7 @@ fn counts(arguments: &Arguments, limit: f64, talk: &Talk) -> Result<()> {
         let end = format!("{} of {} changed", all().count(), counted(compared, "count"));
         print(&lines.into_iter().chain([end]).collect::<Vec<_>>().join("\n"))?;
     }
-    let mut problems = losses(&found, |diffs| &diffs.lost, talk);
+    let mut problems = losses(&found, |diffs| &diffs.lost, console);
     let above = all().filter(|count| count.ratio() > 1.0 + limit).count();
     if above > 0 {
         problems.push(format!("{} grew by more than {} %", counted(above, "count"), 100.0 * limit));
@@ -132,10 +132,10 @@ fn by_experiment<T>(found: &Compared<T>, lines: impl Fn(&T) -> Vec<String>) -> V
 }
 
 /// Notes the experiments that only the new measurement has, and returns in words what only the old one has.
-fn losses<T>(found: &Compared<T>, lost: impl Fn(&T) -> &Lost, talk: &Talk) -> Vec<String> {
+fn losses<T>(found: &Compared<T>, lost: impl Fn(&T) -> &Lost, console: &Console) -> Vec<String> {
     let [only_old, only_new] = &found.alone;
     for name in only_new {
-        talk.note(&format!("experiment {}: only the new measurement has it", printable(name)));
+        console.note(&format!("experiment {}: only the new measurement has it", printable(name)));
     }
     let place = |name: &str, cell: &str| {
         let of = if name.is_empty() { String::new() } else { format!("{} ", printable(name)) };
@@ -168,27 +168,27 @@ fn losses<T>(found: &Compared<T>, lost: impl Fn(&T) -> &Lost, talk: &Talk) -> Ve
 }
 
 /// Prints warnings and notes about the comparison of an experiment.
-fn remark(name: &str, found: &Diff, talk: &Talk) {
+fn remark(name: &str, found: &Diff, console: &Console) {
     let of = if name.is_empty() { String::new() } else { format!(" ({})", printable(name)) };
     if !found.paired {
-        talk.note(&format!(
-            "warning: not measured in turns with each other, so a change of the machine looks like a change of the program (run --against){of}",
+        console.note(&format!(
+            "warning: not measured in turns with each other, so a change of the machine looks like a change of the program (run --baseline){of}",
         ));
     }
     if found.stopped_by_times {
-        talk.note(&format!(
+        console.note(&format!(
             "warning: the repetitions of a cell depended on its times (run --until), so the intervals are too narrow{of}",
         ));
     }
     let [old, new] = found.unmatched;
     if old + new > 0 {
-        talk.note(&format!(
+        console.note(&format!(
             "{} of the old and {} of the new have no counterpart{of}",
             counted(old, "cell"),
             counted(new, "cell")
         ));
     }
-    talk_of(&found.doubts, talk);
+    note_doubts(&found.doubts, console);
 }
 
 fn table(found: &Diff) -> Vec<String> {

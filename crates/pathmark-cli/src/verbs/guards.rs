@@ -1,4 +1,4 @@
-//! The price list of the guards: measures, reads and writes it for `check` and `reproduce`.
+//! The price list of the guards: measures, reads and writes it for `selftest` and `reproduce`.
 
 use crate::check::guards::GUARDS;
 use crate::error::{Error, Result};

@@ -1,7 +1,7 @@
-//! `pathmark list [KIND]`: all names that a user can choose from.
+//! `pathmark list [KIND [NAME]]`: all names that a user can choose from, or one of them.
 
 use crate::console::output::{counted, print, print_json};
-use crate::error::Result;
+use crate::error::{InputError, Result};
 use crate::experiment::{Definition, keys};
 use crate::film::DECOMPOSITIONS;
 use crate::image_io::FORMATS;
@@ -10,7 +10,7 @@ use crate::kernel::{Device, devices};
 use crate::kernel::{KernelEntry, Spec, choose};
 use crate::lab::Lab;
 use crate::material::MATERIALS;
-use crate::measure::{COLUMNS, Column, OUTPUTS, WARNINGS};
+use crate::measure::{COLUMNS, Column, OUTPUTS, WARNINGS, WarningEntry};
 use crate::metric::METRICS;
 use crate::report::FIGURES;
 use crate::sampling::SAMPLERS;
@@ -25,6 +25,8 @@ use std::sync::Arc;
 pub(crate) struct Arguments {
     /// Kind of names to list [default: all]
     kind: Option<Kind>,
+    /// List only this name, such as a warning as it stands in a row, with or without its brackets
+    name: Option<String>,
     /// Print an array of objects with name and about
     #[arg(long)]
     json: bool,
@@ -60,12 +62,21 @@ enum Kind {
     Warnings,
 }
 
+impl Kind {
+    fn name(self) -> String {
+        format!("{self:?}").to_lowercase()
+    }
+}
+
 #[derive(Serialize)]
 struct Item {
     #[serde(skip_serializing_if = "Option::is_none")]
     kind: Option<String>,
     name: String,
     about: String,
+    /// The remedy for a warning.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    advice: Option<&'static str>,
     #[serde(flatten)]
     scene: Option<SceneItem>,
 }
@@ -80,7 +91,7 @@ struct SceneItem {
 }
 
 fn item(name: &str, about: &str) -> Item {
-    Item { kind: None, name: name.to_string(), about: about.to_string(), scene: None }
+    Item { kind: None, name: name.to_string(), about: about.to_string(), advice: None, scene: None }
 }
 
 /// Meaning, type and first schema of a column of `records.csv`.
@@ -142,18 +153,34 @@ fn items(lab: &Arc<Lab>, kind: Kind) -> Result<Vec<Item>> {
         Kind::Keys => keys().map(|(key, about)| item(&key, &about)).collect(),
         Kind::Figures => FIGURES.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Columns => COLUMNS.iter().map(|column| item(column.name, &about_column(column))).collect(),
-        Kind::Warnings => WARNINGS.iter().map(|entry| item(entry.name, entry.about)).collect(),
+        Kind::Warnings => {
+            let warning = |entry: &WarningEntry| Item { advice: Some(entry.advice), ..item(entry.name, entry.about) };
+            WARNINGS.iter().map(warning).collect()
+        }
     })
+}
+
+/// The item of this name. In rows, the numbers of the case follow a warning's name in brackets.
+fn only(mut items: Vec<Item>, kind: Kind, name: &str) -> Result<Item> {
+    let wanted = name.split('(').next().unwrap_or_default().trim();
+    if let Some(place) = items.iter().position(|item| item.name == wanted) {
+        return Ok(items.swap_remove(place));
+    }
+    let names: Vec<String> = items.into_iter().map(|item| item.name).collect();
+    Err(InputError::new("name", name, format!("is none of the {}", kind.name())).allowed(names.join(", ")).into())
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     if let Some(kind) = arguments.kind {
-        let items = items(lab, kind)?;
+        let mut items = items(lab, kind)?;
+        if let Some(name) = &arguments.name {
+            items = vec![only(items, kind, name)?];
+        }
         return if arguments.json { print_json(&items) } else { print(&table(&items)) };
     }
     let mut all = Vec::new();
     for kind in Kind::value_variants() {
-        let name = format!("{kind:?}").to_lowercase();
+        let name = kind.name();
         let listed = items(lab, *kind)?;
         if arguments.json {
             all.extend(listed.into_iter().map(|item| Item { kind: Some(name.clone()), ..item }));
@@ -168,6 +195,9 @@ fn table(items: &[Item]) -> String {
     let width = items.iter().map(|item| item.name.len()).max().unwrap_or(0);
     let lines = items.iter().map(|item| {
         let first = format!("  {:width$}  {}", item.name, item.about);
+        if let Some(advice) = item.advice {
+            return format!("{first}\n  {:width$}    {advice}", "");
+        }
         let Some(SceneItem { calls_for, profile, primitives, estimator }) = &item.scene else { return first };
         let primitives = counted(*primitives, "primitive");
         format!("{first}\n  {:width$}    {primitives}, {estimator}, profile {profile}: {calls_for}", "")

@@ -1,9 +1,9 @@
 //! `pathmark merge PART...`: an image from the parts that `render --shard` made, or a sweep from those of `run --shard`.
 
-use super::picture::is_film;
+use super::image::picture::is_film;
 use super::strict::Strict;
 use crate::command_line;
-use crate::console::Talk;
+use crate::console::Console;
 use crate::console::output::{print, print_json};
 use crate::error::{InputError, Result};
 use crate::experiment::{MergedSweep, Progress as _, merge_sweeps};
@@ -38,16 +38,20 @@ pub(crate) struct Arguments {
     strict: Strict,
 }
 
-pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     if let Some(missing) = arguments.parts.iter().find(|part| !part.exists()) {
         let error = InputError::new("part", missing.display().to_string(), "there is no such file or folder");
         return Err(error.into());
     }
-    if arguments.parts.iter().any(|part| part.is_dir()) { sweeps(arguments, lab, talk) } else { image(arguments, talk) }
+    if arguments.parts.iter().any(|part| part.is_dir()) {
+        sweeps(arguments, lab, console)
+    } else {
+        image(arguments, console)
+    }
 }
 
 /// Merges the rows of sweeps from the folders of their parts.
-fn sweeps(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+fn sweeps(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     arguments.strict.refuse("applies to parts of an image; a sweep checks its rows when it measures them")?;
     let merged = merge_sweeps(&arguments.parts, &arguments.output, arguments.partial, &command_line())?;
     let mut outs: Vec<_> = merged.iter().map(|sweep| sweep.out.clone()).collect();
@@ -55,7 +59,7 @@ fn sweeps(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     let (mut lines, mut sweeps) = (Vec::new(), Vec::new());
     for sweep in &merged {
         for part in &sweep.missing {
-            talk.note(&format!("warning: missing: part {part} of {}", sweep.name));
+            console.note(&format!("warning: missing: part {part} of {}", sweep.name));
         }
         let folder = sweep.folder().display().to_string();
         lines.push(format!("{} rows in {folder}", sweep.rows));
@@ -74,7 +78,7 @@ fn sweeps(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
 }
 
 /// Merges one image from the files of its parts.
-fn image(arguments: &Arguments, talk: &Talk) -> Result<()> {
+fn image(arguments: &Arguments, console: &Console) -> Result<()> {
     let Arguments { parts, output, partial, .. } = arguments;
     let as_film = is_film(output);
     if !as_film {
@@ -89,10 +93,10 @@ fn image(arguments: &Arguments, talk: &Talk) -> Result<()> {
     let key = merged.key;
     let is_whole = merged.missing.is_empty();
     for part in &merged.missing {
-        talk.note(&format!("warning: missing: part {part}"));
+        console.note(&format!("warning: missing: part {part}"));
     }
     if merged.invalid > 0 {
-        talk.note(&format!("warning: {} samples were NaN, infinite or negative", merged.invalid));
+        console.note(&format!("warning: {} samples were NaN, infinite or negative", merged.invalid));
     }
     let checksum = is_whole.then(|| merged.film.checksum());
     if as_film {

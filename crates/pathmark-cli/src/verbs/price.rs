@@ -1,4 +1,4 @@
-//! `pathmark price SCENE --rmse E,E`: predicts the price of accuracies, and checks it with `--pay`.
+//! `pathmark price SCENE --rmse E,E`: predicts the price of accuracies, and checks it with `--verify`.
 //!
 //! Samplers that spread the samples of a pixel are priced at powers of two times the fewest samples: between these
 //! numbers, nets are incomplete and worse.
@@ -8,12 +8,12 @@
 
 use super::axes::Axes;
 use super::letters::letters;
-use super::run::talk_of;
+use super::run::note_doubts;
 use crate::analysis::price::{Law, Price, Renderer};
 use crate::analysis::ranking::groups;
 use crate::analysis::tail::Tail;
 use crate::analysis::{Estimate, Interval};
-use crate::console::Talk;
+use crate::console::Console;
 use crate::console::output::{counted, print, print_json};
 use crate::error::{Error, InputError, Result};
 use crate::experiment::{Paid, Pilot, Piloted, Progress as _, law_of, pay};
@@ -41,7 +41,7 @@ const SHORTER: u32 = 4;
 /// Seeds of the pilots of other estimators: the fewest that give a useful interval.
 const FEW_SEEDS: u32 = 4;
 
-/// `pathmark price cornell --rmse 0.05,0.02,0.01 --pay`
+/// `pathmark price cornell --rmse 0.05,0.02,0.01 --verify`
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// A scene of `pathmark list scenes`, or the path of a .toml file
@@ -55,12 +55,12 @@ pub(crate) struct Arguments {
     /// Seeds of the pilot
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(3..=1000))]
     pilot_seeds: u32,
-    /// Seed of the first render of --pay; the second render uses the next seed
+    /// Seed of the first render of --verify; the second render uses the next seed
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Render each goal with two seeds, and print the measured error and time
-    #[arg(long)]
-    pay: bool,
+    #[arg(long, alias = "pay")]
+    verify: bool,
     #[command(flatten)]
     axes: Axes,
     /// Print an array of JSON objects
@@ -124,7 +124,7 @@ impl Counts {
     }
 }
 
-pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     for goal in &arguments.rmse {
         if !(*goal > 0.0 && goal.is_finite()) {
             let error = InputError::new("rmse", goal.to_string(), "must be a positive number");
@@ -138,15 +138,15 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let asked = arguments.axes.settings(lab, &arguments.scene, arguments.pilot_spp, arguments.seed)?;
     let is_comparison = asked.spec.estimator == ALL;
     let each = if is_comparison { unbiased(lab, &asked).collect() } else { vec![asked] };
-    lab.prepare(each[0].clone())?.remarks().iter().for_each(|remark| talk.note(remark));
+    lab.prepare(each[0].clone())?.remarks().iter().for_each(|remark| console.note(remark));
     let (mut priced, mut texts, mut doubts) = (Vec::new(), Vec::new(), Doubts::default());
     for settings in &each {
-        let (piloted, rows) = price(lab, arguments, settings, talk)?;
+        let (piloted, rows) = price(lab, arguments, settings, console)?;
         texts.push(table(settings, arguments, &piloted, &rows));
         doubts.merge(&piloted.doubts);
         priced.extend(rows);
     }
-    talk_of(&doubts, talk);
+    note_doubts(&doubts, console);
     if is_comparison {
         arguments.rmse.iter().for_each(|goal| group(*goal, &mut priced));
     }
@@ -156,7 +156,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     if is_comparison {
         texts.push(ranking(&arguments.rmse, &priced));
     } else {
-        texts.extend(sooner(lab, arguments, &each[0], &priced, talk)?);
+        texts.extend(sooner(lab, arguments, &each[0], &priced, console)?);
     }
     print(&texts.join("\n\n"))
 }
@@ -168,14 +168,14 @@ fn unbiased<'a>(lab: &'a Lab, settings: &'a Settings) -> impl Iterator<Item = Se
 }
 
 /// Runs the pilot of an estimator, and prices each goal.
-fn price(lab: &Lab, arguments: &Arguments, settings: &Settings, talk: &Talk) -> Result<(Piloted, Vec<Row>)> {
+fn price(lab: &Lab, arguments: &Arguments, settings: &Settings, console: &Console) -> Result<(Piloted, Vec<Row>)> {
     let counts = Counts::of(settings, lab.prepare(settings.clone())?.fewest_spp());
     let pilot = Pilot { spp: arguments.pilot_spp, seeds: arguments.pilot_seeds };
-    let piloted = pilot.run(lab, settings, LEVEL, talk)?;
+    let piloted = pilot.run(lab, settings, LEVEL, console)?;
     let (tail, doubted_seeds) = (piloted.tail, piloted.doubts.count());
     let mut rows = Vec::new();
     for &goal in &arguments.rmse {
-        let row = row(lab, arguments, settings, &piloted.renderer, goal, counts, talk)?;
+        let row = row(lab, arguments, settings, &piloted.renderer, goal, counts, console)?;
         rows.push(Row { tail, doubted_seeds, ..row });
     }
     Ok((piloted, rows))
@@ -209,7 +209,7 @@ fn ranking(goals: &[f64], rows: &[Row]) -> String {
 
 /// Describes an estimator that would certainly reach the first goal sooner than the chosen one; `None` if short pilots
 /// find none.
-fn sooner(lab: &Lab, arguments: &Arguments, own: &Settings, rows: &[Row], talk: &Talk) -> Result<Option<String>> {
+fn sooner(lab: &Lab, arguments: &Arguments, own: &Settings, rows: &[Row], console: &Console) -> Result<Option<String>> {
     let Some(first) = rows.first().filter(|_| unbiased(lab, own).any(|other| other == *own)) else { return Ok(None) };
     let mut others = Vec::new();
     for other in unbiased(lab, own).filter(|other| other != own) {
@@ -219,7 +219,7 @@ fn sooner(lab: &Lab, arguments: &Arguments, own: &Settings, rows: &[Row], talk: 
         let fewest = lab.prepare(Settings { spp: multiple, ..other.clone() })?.fewest_spp();
         let spp = (arguments.pilot_spp / SHORTER).next_multiple_of(fewest).max(fewest);
         // The pilot may have too few samples for a law; the estimator is then left out.
-        let Ok(found) = (Pilot { spp, seeds: FEW_SEEDS }).run(lab, &other, LEVEL, talk) else { continue };
+        let Ok(found) = (Pilot { spp, seeds: FEW_SEEDS }).run(lab, &other, LEVEL, console) else { continue };
         others.extend(found.renderer.price(first.rmse).map(|price| (other.spec.estimator, price.seconds)));
     }
     Ok(soonest(first, others))
@@ -244,7 +244,7 @@ fn row(
     renderer: &Renderer,
     goal: f64,
     counts: Counts,
-    talk: &Talk,
+    console: &Console,
 ) -> Result<Row> {
     let price = renderer.price(goal).ok_or_else(|| {
         Error::Check(format!("{goal} has no price: the error of {} does not fall with more samples", arguments.scene))
@@ -255,7 +255,7 @@ fn row(
         return Err(InputError::new("rmse", goal.to_string(), problem).into());
     }
     let spp = wanted as u32;
-    let paid = if arguments.pay { Some(pay(lab, settings, spp, talk)?) } else { None };
+    let paid = if arguments.verify { Some(pay(lab, settings, spp, console)?) } else { None };
     Ok(Row { estimator: settings.spec.estimator.clone(), ..Row::new(&price, (spp, counts), renderer, paid) })
 }
 

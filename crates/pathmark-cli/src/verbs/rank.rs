@@ -1,8 +1,8 @@
 //! `pathmark rank DIR`: which schedules can be told apart?
 
 use super::letters::letters;
-use super::run::talk_of;
-use crate::console::Talk;
+use super::run::note_doubts;
+use crate::console::Console;
 use crate::console::output::{counted, number, print, print_json};
 use crate::error::{InputError, Result, printable};
 use crate::experiment::{ImageRanking, Place, Progress as _, Ranking, ranking};
@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     if arguments.folder.exists() && !arguments.folder.is_dir() {
         let folder = arguments.folder.display().to_string();
         return Err(InputError::new("folder", folder, "is not a folder").allowed("as in out/thread-scaling").into());
@@ -41,11 +41,12 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         )?;
     }
     if found.images.iter().any(|image| image.part[1] > 1) {
-        talk.note("schedules of different parts were never measured in one repetition, so each part is ranked apart");
+        console
+            .note("schedules of different parts were never measured in one repetition, so each part is ranked apart");
     }
     if !found.without_time.is_empty() {
         let names: Vec<_> = found.without_time.iter().map(|cell| printable(cell)).collect();
-        talk.note(&format!(
+        console.note(&format!(
             "{} not ranked, because no row has a time: {}",
             counted(names.len(), "cell"),
             names.join(", ")
@@ -54,12 +55,12 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let most = found.images.iter().flat_map(|image| &image.places).map(|place| place.repetitions).max().unwrap_or(0);
     let least = found.least_repetitions as usize;
     if most < least {
-        talk.note(&format!(
+        console.note(&format!(
             "{} cannot tell any two schedules apart: it takes {least} (run --repetitions {least}), or fewer schedules (--filter)",
             counted(most, "repetition")
         ));
     }
-    talk_of(&found.doubts, talk);
+    note_doubts(&found.doubts, console);
     Ok(())
 }
 

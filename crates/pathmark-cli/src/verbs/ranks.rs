@@ -1,14 +1,14 @@
 //! `mpiexec -n 4 pathmark render SCENE --ranks RULE`: one image by several processes.
 
-use super::message_costs::library;
 use super::rounds::{self, Until};
 use crate::cluster::{Cluster, RankRow, Tally};
-use crate::console::Talk;
+use crate::console::Console;
 use crate::error::Result;
 use crate::lab::{Lab, RankRule};
 use crate::measure::{Outcome, Record, Setup};
 use clap::Args;
 use serde::Serialize;
+use std::env;
 use std::path::PathBuf;
 
 /// The options of a render by several processes.
@@ -57,6 +57,12 @@ pub(super) fn label(told: &Told, record: &mut Record) {
     record.mpi.clone_from(&told.mpi);
 }
 
+/// The library that the user names in the option or the environment; `None` if the program is to find one.
+pub(super) fn library(option: Option<&PathBuf>) -> Option<PathBuf> {
+    let named = option.cloned().or_else(|| env::var_os("PATHMARK_MPI").map(PathBuf::from));
+    named.filter(|path| path.as_os_str() != "auto")
+}
+
 impl Ranks {
     /// The rule, if there is one.
     pub(super) fn rule(&self, lab: &Lab) -> Result<Option<RankRule>> {
@@ -70,12 +76,12 @@ impl Ranks {
         setup: Setup,
         until: &Until,
         spp: u32,
-        talk: &Talk,
+        console: &Console,
     ) -> Result<Option<(Setup, Outcome, Told)>> {
         let library = library(self.mpi.as_ref());
         let cluster = Cluster::begin(library.as_deref())?;
         let done = if until.is_multi_round() {
-            cluster.render_in_rounds(setup, rule, |setup, extend| rounds::render(until, setup, spp, talk, extend))?
+            cluster.render_in_rounds(setup, rule, |setup, extend| rounds::render(until, setup, spp, console, extend))?
         } else {
             let done = cluster.render(&setup, rule)?;
             done.map(|(outcome, tally)| ((setup, outcome), tally))

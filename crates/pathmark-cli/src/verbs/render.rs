@@ -2,8 +2,8 @@
 
 use super::axes::Axes;
 use super::strict::Strict;
-use super::{ranks, replay, rounds, shard};
-use crate::console::Talk;
+use super::{inspect, ranks, rounds, shard};
+use crate::console::Console;
 use crate::console::output::{counted, print, print_json};
 use crate::error::{InputError, Result};
 use crate::experiment::Progress;
@@ -45,7 +45,7 @@ pub(crate) struct Arguments {
     /// Scale .png, .ppm and .bmp files so that the brightest channel of the image is 1; the radiance itself does not change
     #[arg(long, help_heading = "Output")]
     auto_exposure: bool,
-    /// Write each job's worker, start and end: a .csv file for `pathmark trace` and `pathmark simulate`
+    /// Write each job's worker, start and end: a .csv file for `pathmark inspect jobs` and `pathmark simulate`
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     trace: Option<PathBuf>,
     /// Print the record as one JSON object
@@ -57,19 +57,19 @@ pub(crate) struct Arguments {
 
 const DEFAULT_SPP: u32 = 16;
 
-pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     let spp = arguments.spp.unwrap_or(DEFAULT_SPP);
-    let setup = talk.busy(&format!("reading {}", arguments.scene), || {
+    let setup = console.busy(&format!("reading {}", arguments.scene), || {
         let settings = arguments.axes.settings(lab, &arguments.scene, spp, arguments.seed)?;
         lab.prepare(Settings { adaptive: arguments.adaptive, ..settings })
     })?;
     if let Some(shard) = arguments.part.shard()? {
-        return render_part(arguments, shard, setup, talk);
+        return render_part(arguments, shard, setup, console);
     }
     let path = arguments.image.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", setup.name())));
     let spec = &setup.settings().spec;
     let format = image_io::check_picture(&path, spec.width, spec.height)?;
-    setup.remarks().iter().for_each(|remark| talk.note(remark));
+    setup.remarks().iter().for_each(|remark| console.note(remark));
     let mut files = Files::default();
     files.reads_scene(setup.files());
     let outputs = [("image", Some(&path)), ("trace", arguments.trace.as_ref()), arguments.rounds.output()];
@@ -79,18 +79,18 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
 
     let mut clustered = None;
     let (setup, outcome) = if let Some(rule) = arguments.ranks.rule(lab)? {
-        let rendered = arguments.ranks.render(&rule, setup, &arguments.rounds, spp, talk)?;
+        let rendered = arguments.ranks.render(&rule, setup, &arguments.rounds, spp, console)?;
         let Some((setup, outcome, told)) = rendered else { return Ok(()) };
         clustered = Some(told);
         (setup, outcome)
     } else if arguments.rounds.is_multi_round() {
-        rounds::render(&arguments.rounds, setup, spp, talk, &mut |rounds, spp| rounds.extend_to(spp, None))?
+        rounds::render(&arguments.rounds, setup, spp, console, &mut |rounds, spp| rounds.extend_to(spp, None))?
     } else {
-        talk.busy(&format!("building {}", setup.name()), || setup.build())?;
-        talk.begin(&format!("{} at {spp} spp", setup.name()), setup.jobs() as u64);
-        let watch = |done| talk.advance(done);
+        console.busy(&format!("building {}", setup.name()), || setup.build())?;
+        console.begin(&format!("{} at {spp} spp", setup.name()), setup.jobs() as u64);
+        let watch = |done| console.advance(done);
         let outcome = setup.run(Some(&watch))?;
-        talk.end();
+        console.end();
         (setup, outcome)
     };
     let image = outcome.film.image();
@@ -106,10 +106,10 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         ranks::label(cluster, &mut record);
     }
     for warning in &outcome.warnings {
-        talk.note(&format!("warning: {warning}"));
+        console.note(&format!("warning: {warning}"));
     }
     for sample in &outcome.invalid {
-        talk.note(&replay::command(&arguments.scene, setup.settings(), *sample));
+        console.note(&inspect::path::command(&arguments.scene, setup.settings(), *sample));
     }
     match (&clustered, arguments.json) {
         (Some(cluster), true) => print_json(&ranks::with_record(cluster, &record))?,
@@ -123,18 +123,18 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
 }
 
 /// Renders a part of the image into its file.
-fn render_part(arguments: &Arguments, shard: Shard, setup: Setup, talk: &Talk) -> Result<()> {
+fn render_part(arguments: &Arguments, shard: Shard, setup: Setup, console: &Console) -> Result<()> {
     let path = arguments.image.as_deref().unwrap_or(Path::new("part"));
     if image_io::check_format(path).is_ok() {
         let problem = "is a picture format, but a part is not a picture";
         let error = InputError::new("image", path.display().to_string(), problem);
         return Err(error.allowed("another extension, as in part-1.film").into());
     }
-    setup.remarks().iter().for_each(|remark| talk.note(remark));
+    setup.remarks().iter().for_each(|remark| console.note(remark));
     let mut files = Files::default();
     files.reads_scene(setup.files());
     files.writes("image", path)?;
-    let invalid = shard::render(shard, setup, path, arguments.json, talk)?;
+    let invalid = shard::render(shard, setup, path, arguments.json, console)?;
     arguments.strict.check(invalid)
 }
 

@@ -1,13 +1,13 @@
 //! `pathmark reproduce`: all committed experiments.
 
+use super::overall_progress::OverallProgress;
 use super::plan::Plans;
-use super::run::{check_failures, rows, talk_of, tell_left_out};
-use super::whole::Whole;
+use super::run::{check_failures, note_doubts, rows, tell_left_out};
 use super::{cases, guards, profile, strict::Strict};
 use crate::cases_file;
 use crate::check::{self, Case, Effort};
 use crate::command_line;
-use crate::console::Talk;
+use crate::console::Console;
 use crate::console::output::{lock_folder, print};
 use crate::error::{Error, Result};
 use crate::experiment::{Definition, Options, Profile, Progress, RecordsFile, Summary, Sweep, Timeout};
@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
     strict: Strict,
 }
 
-pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     let profile = arguments.size.profile();
     let options = Options {
         profile,
@@ -60,7 +60,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     definitions.retain(|definition| match definition.missing_feature() {
         None => true,
         Some((_, takes)) => {
-            talk.note(&format!("{} is left out: it needs {takes}", definition.name));
+            console.note(&format!("{} is left out: it needs {takes}", definition.name));
             false
         }
     });
@@ -73,23 +73,23 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     report::claim("out", &arguments.out, &mut files)?;
     let _lock = lock_folder(&arguments.out, Sharing::Alone)?;
     if !arguments.resume {
-        put_aside(&arguments.out, lab, talk)?;
+        put_aside(&arguments.out, lab, console)?;
     }
     if !guards::are_in(&arguments.out) {
         guards::claim(&arguments.out, &mut files)?;
     }
-    let Total { rows, failed, timed_out, invalid, left_out, doubts } = run_all(&sweeps, profile, lab, talk)?;
-    // The cases take longer than a sixth of all quick experiments, so the quick profile leaves them to `check --out`.
+    let Total { rows, failed, timed_out, invalid, left_out, doubts } = run_all(&sweeps, profile, lab, console)?;
+    // The cases take longer than a sixth of all quick experiments, so the quick profile leaves them to `selftest --out`.
     if profile != Profile::Quick && !cases_file::is_in(&arguments.out) {
         let all: Vec<&'static Case> = check::cases().collect();
-        cases::write(&arguments.out, &all, &cases::try_all(&all, Effort::Quick, talk)?)?;
+        cases::write(&arguments.out, &all, &cases::try_all(&all, Effort::Quick, console)?)?;
     }
     if !guards::are_in(&arguments.out) {
-        guards::write(&arguments.out, lab, &guards::measure(talk))?;
+        guards::write(&arguments.out, lab, &guards::measure(console))?;
     }
     let page = report::write(lab, &arguments.out)?;
-    talk_of(&doubts, talk);
-    tell_left_out(&left_out, talk);
+    note_doubts(&doubts, console);
+    tell_left_out(&left_out, console);
     let told = self::rows(rows, &left_out);
     print(&format!("{told} from {} experiments, report in {}", definitions.len(), page.display()))?;
     check_failures(rows, failed, timed_out)?;
@@ -109,7 +109,7 @@ struct Total {
 
 /// Runs all sweeps. Quick sweeps end before an estimate would be useful; for the others, the time left is of all
 /// sweeps.
-fn run_all(sweeps: &[Sweep<'_>], profile: Profile, lab: &Lab, talk: &Talk) -> Result<Total> {
+fn run_all(sweeps: &[Sweep<'_>], profile: Profile, lab: &Lab, console: &Console) -> Result<Total> {
     let mut total = Total::default();
     let mut add = |summary: &Summary| {
         total.rows += summary.rows;
@@ -121,13 +121,13 @@ fn run_all(sweeps: &[Sweep<'_>], profile: Profile, lab: &Lab, talk: &Talk) -> Re
     };
     if profile == Profile::Quick {
         for sweep in sweeps {
-            add(&sweep.run(talk)?);
+            add(&sweep.run(console)?);
         }
         return Ok(total);
     }
     let plans = Plans::new(lab, sweeps)?;
-    talk.note(&plans.told());
-    let whole = Whole::new(talk, &plans.each);
+    console.note(&plans.told());
+    let whole = OverallProgress::new(console, &plans.each);
     for (sweep, plan) in sweeps.iter().zip(&plans.each) {
         whole.enter(plan);
         add(&sweep.run(&whole)?);
@@ -137,7 +137,7 @@ fn run_all(sweeps: &[Sweep<'_>], profile: Profile, lab: &Lab, talk: &Talk) -> Re
 
 /// Moves the results of an earlier run away, whatever its experiments and profile: measurements are never overwritten,
 /// and a report is of one run.
-fn put_aside(out: &Path, lab: &Lab, talk: &Talk) -> Result<()> {
+fn put_aside(out: &Path, lab: &Lab, console: &Console) -> Result<()> {
     let names: Vec<&str> = Definition::known(lab).map(|(name, _)| name).collect();
     // All are checked before any is moved: a running sweep may hold the lock of one of them.
     for rows in names.iter().map(|name| out.join(name).join("records.csv")) {
@@ -161,7 +161,7 @@ fn put_aside(out: &Path, lab: &Lab, talk: &Talk) -> Result<()> {
             std::fs::create_dir_all(&earlier).map_err(|e| Error::system("creating", &earlier, e))?;
             let target = earlier.join(name);
             std::fs::rename(&folder, &target).map_err(|e| Error::system("moving", &folder, e))?;
-            talk.note(&format!("moved {} to {}", folder.display(), target.display()));
+            console.note(&format!("moved {} to {}", folder.display(), target.display()));
         }
     }
     Ok(())

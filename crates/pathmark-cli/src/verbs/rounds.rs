@@ -1,6 +1,6 @@
 //! The options of `render` that render in rounds: until an accuracy, until time is up, with checkpoints.
 
-use crate::console::Talk;
+use crate::console::Console;
 use crate::error::Result;
 use crate::experiment::Progress as _;
 use crate::measure::{CONFIDENCE, Checkpoint, Extend, Goal, Outcome, Record, Rounds, Setup, Warning};
@@ -52,7 +52,7 @@ pub(super) fn render(
     arguments: &Until,
     setup: Setup,
     spp: u32,
-    talk: &Talk,
+    console: &Console,
     extend: Extend<'_>,
 ) -> Result<(Setup, Outcome)> {
     let spp = (!arguments.has_goal()).then_some(spp);
@@ -75,7 +75,7 @@ pub(super) fn render(
         pause_s: checkpoint.as_ref().map(|_| PAUSE_S),
     };
     goal.check(&rounds)?;
-    talk.busy(&format!("building {}", rounds.setup().name()), || rounds.setup().build())?;
+    console.busy(&format!("building {}", rounds.setup().name()), || rounds.setup().build())?;
 
     let (resumed, name) = (rounds.spp(), rounds.setup().name().to_string());
     let title = match (spp, goal.target_error, goal.time_limit_s) {
@@ -83,13 +83,13 @@ pub(super) fn render(
         (_, Some(error), _) => format!("{name} until its RMSE < {error} ({:.0} % confidence)", 100.0 * CONFIDENCE),
         (.., limit_s) => format!("{name} for {} s", limit_s.unwrap_or_default()),
     };
-    talk.begin(&title, u64::from(spp.unwrap_or(0)));
+    console.begin(&title, u64::from(spp.unwrap_or(0)));
     let missed = goal.pursue(&mut rounds, before, extend, &mut |rounds, position| {
-        talk.note(&format!("{name}: {} spp after {:.2} s", rounds.spp(), position.rendering_s));
-        talk.advance(u64::from(rounds.spp()));
+        console.note(&format!("{name}: {} spp after {:.2} s", rounds.spp(), position.rendering_s));
+        console.advance(u64::from(rounds.spp()));
         checkpoint.as_ref().map_or(Ok(()), |checkpoint| checkpoint.save(rounds, position))
     })?;
-    talk.end();
+    console.end();
     let mut outcome = rounds.outcome();
     outcome.warnings.extend(missed);
     if resumed > 0 {

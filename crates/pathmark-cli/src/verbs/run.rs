@@ -2,11 +2,11 @@
 
 use super::{profile, strict::Strict};
 use crate::command_line;
-use crate::console::Talk;
+use crate::console::Console;
 use crate::console::output::{lock_folder, print};
 use crate::error::{Error, Result};
 use crate::experiment::{
-    Definition, LARGEST_REPETITIONS, Options, Progress, StoppingRule, Sweep, SweepShard, Timeout, folder_against,
+    Definition, LARGEST_REPETITIONS, Options, Progress, StoppingRule, Sweep, SweepShard, Timeout, baseline_folder,
 };
 use crate::files::Files;
 use crate::lab::Lab;
@@ -52,17 +52,17 @@ pub(crate) struct Arguments {
     shard: Option<String>,
     /// Another build of this program; both builds run every repetition of every cell in turns, and `pathmark diff` compares
     /// them
-    #[arg(long, value_name = "PROGRAM", conflicts_with_all = ["resume", "shard"])]
-    against: Option<PathBuf>,
+    #[arg(long, alias = "against", value_name = "PROGRAM", conflicts_with_all = ["resume", "shard"])]
+    baseline: Option<PathBuf>,
     /// Repeat each cell until its speedup (or its time, without serial runs) is known to within this share, as in 3%. With
-    /// --against: until each cell is known to be slower by more than this share, faster, or the same. `fastest` stops
+    /// --baseline: until each cell is known to be slower by more than this share, faster, or the same. `fastest` stops
     /// repeating a schedule once another schedule of the same image is faster, `order` once it can be told apart from all
     /// others. At most 200 repetitions, or those of --repetitions; the intervals account for early stops
     #[arg(long, value_name = "SHARE|fastest|order", allow_hyphen_values = true)]
     until: Option<String>,
     /// With --until: start no repetition after this time, as in 60s
-    #[arg(long, value_name = "TIME", requires = "until")]
-    within: Option<String>,
+    #[arg(long, alias = "within", value_name = "TIME", requires = "until")]
+    max_time: Option<String>,
     /// Time limit of each cell's process, as in 10min, or none. A cell that reaches it is ended, and its rows fail
     /// [default: the experiment's, or ten times the estimated time, at least a minute]
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
@@ -73,7 +73,7 @@ pub(crate) struct Arguments {
     strict: Strict,
 }
 
-pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     let definition = Definition::load(lab, &arguments.experiment)?.with_values(&arguments.values)?;
     check_figures(&definition)?;
     let options = Options {
@@ -82,13 +82,13 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         resume: arguments.resume,
         repetitions: arguments.repetitions,
         filters: arguments.filters.clone(),
-        against: arguments.against.clone(),
+        baseline: arguments.baseline.clone(),
         shard: arguments.shard.as_deref().map(SweepShard::parse).transpose()?,
         serial_for: figure_of_serial(&definition),
         until: arguments
             .until
             .as_deref()
-            .map(|limit| StoppingRule::parse(limit, arguments.within.as_deref()))
+            .map(|limit| StoppingRule::parse(limit, arguments.max_time.as_deref()))
             .transpose()?,
         timeout: arguments.timeout.as_deref().map(Timeout::parse).transpose()?,
         rerun_doubtful: arguments.rerun_doubtful,
@@ -100,17 +100,17 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     report::claim("out", &arguments.out, &mut files)?;
     // Other experiments may run in the same folder, each in its own subfolder; `reproduce` may not.
     let _lock = lock_folder(&arguments.out, Sharing::Shared)?;
-    let summary = sweep.run(talk)?;
+    let summary = sweep.run(console)?;
     let page = report::write(lab, &arguments.out);
-    talk_of(&summary.doubts, talk);
-    tell_left_out(&summary.left_out, talk);
+    note_doubts(&summary.doubts, console);
+    tell_left_out(&summary.left_out, console);
     // Failed rows are reported before a page that could not be written.
     check_failures(summary.rows + summary.other_rows, summary.failed, summary.timed_out)?;
     arguments.strict.check(summary.invalid)?;
-    if arguments.against.is_some() {
-        let old = folder_against(&arguments.out, &definition.name);
+    if arguments.baseline.is_some() {
+        let old = baseline_folder(&arguments.out, &definition.name);
         let [old, new] = [&old, &summary.folder].map(|folder| folder.display().to_string());
-        talk.note(&format!("{} compares the two builds", shell::command(["diff", &old, &new])));
+        console.note(&format!("{} compares the two builds", shell::command(["diff", &old, &new])));
     }
     print(&format!(
         "{} in {}, report in {}",
@@ -129,9 +129,9 @@ pub(super) fn rows(count: usize, left_out: &LeftOut) -> String {
 }
 
 /// Names the rows that were not run, if there are any.
-pub(super) fn tell_left_out(left_out: &LeftOut, talk: &Talk) {
+pub(super) fn tell_left_out(left_out: &LeftOut, console: &Console) {
     if left_out.count() > 0 {
-        talk.note(&left_out.to_string());
+        console.note(&left_out.to_string());
     }
 }
 
@@ -145,8 +145,8 @@ pub(super) fn check_failures(rows: usize, failed: usize, timed_out: usize) -> Re
 }
 
 /// Says how many rows have times in doubt, if there are any.
-pub(super) fn talk_of(doubts: &Doubts, talk: &Talk) {
+pub(super) fn note_doubts(doubts: &Doubts, console: &Console) {
     if doubts.is_any() {
-        talk.note(&format!("{doubts}; `pathmark explain` describes each"));
+        console.note(&format!("{doubts}; `pathmark list warnings` explains each"));
     }
 }

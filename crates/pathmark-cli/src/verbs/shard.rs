@@ -1,7 +1,7 @@
 //! `render --shard 2/4`: one part of an image, kept in a file for `pathmark merge`.
 
 use super::rounds::PAUSE_S;
-use crate::console::Talk;
+use crate::console::Console;
 use crate::console::output::{counted, print, print_json};
 use crate::error::{Error, InputError, Result};
 use crate::experiment::Progress as _;
@@ -72,7 +72,7 @@ fn of_array(cut: ShardCut) -> Result<Shard> {
 }
 
 /// Renders the part into its file, from where an earlier process stopped; returns the number of invalid samples.
-pub(super) fn render(shard: Shard, setup: Setup, path: &Path, as_json: bool, talk: &Talk) -> Result<u64> {
+pub(super) fn render(shard: Shard, setup: Setup, path: &Path, as_json: bool, console: &Console) -> Result<u64> {
     let samples = shard.samples(setup.settings().spp);
     let mut rounds = Rounds::of(setup, Some(shard))?;
     let (checkpoint, saved) = Checkpoint::open(path, &rounds, None)?;
@@ -82,18 +82,18 @@ pub(super) fn render(shard: Shard, setup: Setup, path: &Path, as_json: bool, tal
     }
     let (name, resumed) = (rounds.setup().name().to_string(), rounds.spp() - samples.start);
     let goal = Goal { spp: Some(samples.end), target_error: None, time_limit_s: None, pause_s: Some(PAUSE_S) };
-    talk.begin(&format!("part {shard} of {name}"), samples.len() as u64);
+    console.begin(&format!("part {shard} of {name}"), samples.len() as u64);
     let extend = &mut |rounds: &mut Rounds, spp| rounds.extend_to(spp, None);
     goal.pursue(&mut rounds, before, extend, &mut |rounds, position| {
         let done = rounds.spp() - samples.start;
-        talk.note(&format!("{name}: {done} of {} samples after {:.2} s", samples.len(), position.rendering_s));
-        talk.advance(u64::from(done));
+        console.note(&format!("{name}: {done} of {} samples after {:.2} s", samples.len(), position.rendering_s));
+        console.advance(u64::from(done));
         checkpoint.save(rounds, position)
     })?;
-    talk.end();
+    console.end();
     let outcome = rounds.outcome();
     for warning in &outcome.warnings {
-        talk.note(&format!("warning: {warning}"));
+        console.note(&format!("warning: {warning}"));
     }
     let (cut, makespan_s) = (shard.cut().to_string(), outcome.makespan_s);
     if as_json {

@@ -1,8 +1,8 @@
 //! `pathmark simulate TRACE`: replays the jobs of a run on workers that this machine does not have.
 
-use super::run::talk_of;
+use super::run::note_doubts;
 use crate::cluster::MessageCosts;
-use crate::console::Talk;
+use crate::console::Console;
 use crate::console::output::print;
 use crate::error::{Error, InputError, Result};
 use crate::experiment::{MESSAGES, Progress, read_calibration};
@@ -47,7 +47,7 @@ pub(crate) struct Arguments {
     /// Numbers of processes, each with --workers threads
     #[arg(long, value_name = "LIST", default_value = "2..64", help_heading = "Processes", requires = "ranks")]
     nodes: String,
-    /// Message costs, as printed by `mpiexec -n 2 pathmark message-costs --json` [default: those of the experiment's folder, or zero]
+    /// Message costs, as printed by `mpiexec -n 2 pathmark inspect messages --json` [default: those of the experiment's folder, or zero]
     #[arg(long, value_name = "FILE", help_heading = "Processes", requires = "ranks")]
     messages: Option<PathBuf>,
     /// Do not predict this machine first
@@ -58,7 +58,7 @@ pub(crate) struct Arguments {
     out: PathBuf,
 }
 
-pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     let workers = parse_workers("workers", &arguments.workers)?;
     let hardware = hardware(arguments)?;
     let measured = if arguments.trace.is_dir() { Some(Results::open(lab, &arguments.trace)?) } else { None };
@@ -70,7 +70,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         None => TraceFile::read(&arguments.trace)?,
     };
     if let Some(doubt) = trace.doubt() {
-        talk.note(&doubt);
+        console.note(&doubt);
     }
     let costs = trace.costs_s();
     check_noise(arguments, &hardware, costs.iter().sum())?;
@@ -108,15 +108,15 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         files.claims("out", &arguments.out.join(name))?;
     }
     create_folder("out", &arguments.out)?;
-    let rows = overheads(arguments, lab, &names, talk)?;
+    let rows = overheads(arguments, lab, &names, console)?;
     let mut contenders = contenders(lab, &rows);
 
     if !arguments.no_check {
         let (predictions, doubts) = match &measured {
             Some(results) => (forecasts::predictions(results, &contenders)?, results.doubts()),
-            None => predict_live(lab, &trace, &contenders, talk)?,
+            None => predict_live(lab, &trace, &contenders, console)?,
         };
-        talk_of(&doubts, talk);
+        note_doubts(&doubts, console);
         show(&forecasts::prediction_blocks(&predictions))?;
     }
     let settings = &trace.header.settings;
@@ -135,7 +135,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         let rows = forecast(&costs, &contenders, &workers, &hardware);
         (forecasts::forecast_blocks(&rows, &workload, hardware == Hardware::default(), &named), "forecast.csv")
     } else {
-        let messages = messages(arguments, talk)?;
+        let messages = messages(arguments, console)?;
         if let Some(results) = measured.as_ref().filter(|_| !arguments.no_check) {
             let predictions = rank_forecasts::rank_predictions(results, &contenders, messages)?;
             show(&rank_forecasts::rank_prediction_blocks(&predictions))?;
@@ -156,27 +156,27 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
 }
 
 /// The costs of handing out jobs: those calibrated with the trace explain it better than those of this machine now.
-fn overheads(arguments: &Arguments, lab: &Lab, names: &[String], talk: &Talk) -> Result<Vec<CalibrationRow>> {
+fn overheads(arguments: &Arguments, lab: &Lab, names: &[String], console: &Console) -> Result<Vec<CalibrationRow>> {
     let calibrated = arguments.trace.join("calibration.csv");
     if calibrated.is_file() && arguments.strategies.is_empty() {
         return read_calibration(&calibrated);
     }
-    talk.note("calibrating: every strategy hands out empty jobs");
+    console.note("calibrating: every strategy hands out empty jobs");
     let load = ForeignLoad::begin();
     let rows = calibrate(lab, names)?;
     if let Some(warning) = load.warning() {
-        talk.note(&warning);
+        console.note(&warning);
     }
     Ok(rows)
 }
 
 /// The costs of messages from the user's file, or from the folder; none without either.
-fn messages(arguments: &Arguments, talk: &Talk) -> Result<Messages> {
+fn messages(arguments: &Arguments, console: &Console) -> Result<Messages> {
     let own = arguments.trace.join(MESSAGES);
     if let Some(path) = arguments.messages.as_ref().or(own.is_file().then_some(&own)) {
         return Ok(rank_forecasts::messages(&MessageCosts::read(path)?));
     }
-    talk.note("messages are assumed to cost nothing; --messages sets their costs");
+    console.note("messages are assumed to cost nothing; --messages sets their costs");
     Ok(Messages::default())
 }
 
@@ -289,7 +289,7 @@ fn predict_live(
     lab: &Lab,
     trace: &TraceFile,
     contenders: &[Contender],
-    talk: &Talk,
+    console: &Console,
 ) -> Result<(Vec<Prediction>, Doubts)> {
     let processors = available_threads();
     let base = &trace.header.settings;
@@ -304,21 +304,21 @@ fn predict_live(
             let settings = Settings { strategy: contender.name.clone(), threads, ..base.clone() };
             match lab.prepare(settings) {
                 Ok(setup) => schedules.push(setup),
-                Err(error) => talk.note(&format!("{} is not tried on this machine: {error}", contender.name)),
+                Err(error) => console.note(&format!("{} is not tried on this machine: {error}", contender.name)),
             }
         }
     }
     let used = |setup: &Setup| setup.threads().min(processors) as f64;
     let round_s: f64 = schedules.iter().map(|setup| work_s / used(setup)).sum::<f64>() + work_s;
     if round_s > MOST_CHECK_S {
-        talk.note(&format!(
+        console.note(&format!(
             "this machine is not predicted: trying all strategies on the jobs of the trace would take {round_s:.0} s"
         ));
         return Ok((Vec::new(), Doubts::default()));
     }
     let rounds = (CHECK_S / round_s).clamp(1.0, 5.0) as u64;
     let (mut runs, mut doubts) = (Vec::new(), Doubts::default());
-    talk.begin("predicting this machine", rounds * schedules.len() as u64);
+    console.begin("predicting this machine", rounds * schedules.len() as u64);
     for round in 0..rounds {
         let serial = lab.prepare(Settings { strategy: "serial".to_string(), threads: 1, ..base.clone() })?;
         let alone = serial.run(None)?;
@@ -337,10 +337,10 @@ fn predict_live(
                 makespan_s: outcome.makespan_s,
             };
             runs.push((observed, costs.clone()));
-            talk.advance(round * schedules.len() as u64 + index as u64 + 1);
+            console.advance(round * schedules.len() as u64 + index as u64 + 1);
         }
     }
-    talk.end();
+    console.end();
     let observed = runs.iter().map(|(observed, costs)| (observed.clone(), costs.as_slice()));
     Ok((predict(observed, contenders, processors), doubts))
 }

@@ -1,4 +1,4 @@
-//! Costs of MPI between the processes that a launcher started: `mpiexec -n 2 pathmark message-costs`.
+//! Costs of MPI between the processes that a launcher started: `mpiexec -n 2 pathmark inspect messages`.
 //!
 //! Rank 1 asks, rank 0 answers, and the others wait. The duration of a fetch-and-op depends on the library: some
 //! complete it without rank 0, others only while rank 0 is inside a call of MPI. It is therefore timed while rank 0
@@ -30,7 +30,7 @@ const GATHER: &str = "a gather of 5 MB from each rank";
 const WAITS: &str = "waits";
 const LOOKS: &str = "computes, and looks every ms";
 
-/// The costs measured between some ranks, as `message-costs --json` prints them.
+/// The costs measured between some ranks, as `inspect messages --json` prints them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MessageCosts {
@@ -61,12 +61,12 @@ pub struct MessageCost {
 }
 
 impl MessageCosts {
-    /// Reads the output of `message-costs --json`.
+    /// Reads the output of `inspect messages --json`.
     pub fn read(path: &Path) -> Result<Self> {
         let text = read_text(path)?;
         serde_json::from_str(&text).map_err(|e| {
             let error = InputError::new("messages", path.display().to_string(), format!("cannot be read: {e}"));
-            error.allowed("the output of mpiexec -n 2 pathmark message-costs --json").into()
+            error.allowed("the output of mpiexec -n 2 pathmark inspect messages --json").into()
         })
     }
 
@@ -106,7 +106,7 @@ impl Cluster {
     pub fn message_costs(self) -> Result<Option<MessageCosts>> {
         if self.size() < 2 {
             let error = InputError::new("ranks", self.size().to_string(), "is too few: messages need two processes");
-            return Err(error.allowed("mpiexec -n 2 pathmark message-costs").into());
+            return Err(error.allowed("mpiexec -n 2 pathmark inspect messages").into());
         }
         let mut costs = vec![self.told(REQUEST, WAITS, &self.requests()?)?];
         for (rank_0, pause, repetitions) in

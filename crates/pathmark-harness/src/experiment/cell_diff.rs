@@ -1,6 +1,6 @@
 //! Comparison of the times of one cell in two measurements.
 //!
-//! Rows of one sweep in turns (`run --against`) give a ratio for each repetition; other rows give the ratios of all pairs
+//! Rows of one sweep in turns (`run --baseline`) give a ratio for each repetition; other rows give the ratios of all pairs
 //! of an old and a new time, with an interval that allows for their autocorrelation. If repetitions in pairs had a goal
 //! (`run --until`), the intervals hold at every look.
 

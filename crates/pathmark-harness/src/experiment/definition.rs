@@ -33,7 +33,7 @@
 //!
 //! [quick]                        # what `--quick` renders; the profile may replace any axis of the matrices
 //! size = [128, 96]
-//! repetitions = 6                # or { until = "3 %", at-most = 200, within = "60 s" }; until = "fastest" or "order" compares schedules
+//! repetitions = 6                # or { until = "3 %", at-most = 200, max-time = "60 s" }; until = "fastest" or "order" compares schedules
 //! reference-spp = 2000           # optional: ten times the largest spp
 //!
 //! [full]                         # `--full`; without any of [quick], [full] and [reports] there is a [quick] of 320x240, 6 repetitions
@@ -77,11 +77,18 @@ pub(super) struct Feature {
 }
 
 /// The features that an experiment may require.
-pub(super) const FEATURES: &[Feature] = &[Feature {
-    name: "openmp",
-    is_there: cfg!(feature = "openmp"),
-    takes: "a program built by `cargo run --release --features openmp -- ...`",
-}];
+pub(super) const FEATURES: &[Feature] = &[
+    Feature {
+        name: "openmp",
+        is_there: cfg!(feature = "openmp"),
+        takes: "a program built by `cargo run --release --features openmp -- ...`",
+    },
+    Feature {
+        name: "more-pools",
+        is_there: cfg!(feature = "more-pools"),
+        takes: "a program built by `cargo run --release --features more-pools -- ...`",
+    },
+];
 
 /// Files that a sweep may keep beside its rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]

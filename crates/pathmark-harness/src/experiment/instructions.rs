@@ -6,7 +6,7 @@
 
 use super::cell_process::{CellJob, PointJob};
 use super::time_limit::{Limits, timed_out};
-use super::{Cell, Progress, Sweep, folder_against, process_group};
+use super::{Cell, Progress, Sweep, baseline_folder, process_group};
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use serde::{Deserialize, Serialize};
@@ -38,9 +38,9 @@ impl Sweep<'_> {
     /// one.
     pub(super) fn count_instructions(&self, folder: &Path, progress: &dyn Progress) -> Result<()> {
         let own = env::current_exe().map_err(|e| Error::system("finding", "this program", e))?;
-        let other = self.options.against.clone();
-        let against = other.map(|program| (program, folder_against(&self.options.out, &self.definition.name)));
-        let builds = [Some((own, folder.to_path_buf())), against];
+        let other = self.options.baseline.clone();
+        let baseline = other.map(|program| (program, baseline_folder(&self.options.out, &self.definition.name)));
+        let builds = [Some((own, folder.to_path_buf())), baseline];
         let of_this_program = |cell: &&Cell| cell.external.is_none() && cell.settings.ranks.is_none();
         let cells: Vec<&Cell> = self.cells.iter().filter(of_this_program).collect();
         for (program, folder) in builds.into_iter().flatten() {

@@ -18,7 +18,7 @@ const KEYS: &[(&str, &str)] = &[
         "timeout",
         "time limit of each cell's process, as in \"10min\", or \"none\" [default: ten times its estimate, at least a minute]",
     ),
-    ("requires", "optional features that the build must have: openmp"),
+    ("requires", "optional features that the build must have: openmp, more-pools"),
     ("matrix", "a table of axes, or several under [[matrix]]; cells are all combinations [required]"),
     ("matrix.weak", "true: weak scaling, spp is multiplied by the number of workers"),
     ("matrix.curve", "true: each render gives rows at 1, 2, 4 ... times the fewest samples, up to its spp"),
@@ -31,7 +31,7 @@ const KEYS: &[(&str, &str)] = &[
     ("external", "another program to run beside the cells, under [[external]]"),
     (
         "quick",
-        "the profile --quick: any axis, size, repetitions (a number, or { until = \"3 %\", at-most = 200, within = \"60 s\" }; until may be \"fastest\" or \"order\"), reference-spp, timeout [default: 320x240, 6 repetitions]",
+        "the profile --quick: any axis, size, repetitions (a number, or { until = \"3 %\", at-most = 200, max-time = \"60 s\" }; until may be \"fastest\" or \"order\"), reference-spp, timeout [default: 320x240, 6 repetitions]",
     ),
     ("full", "the profile --full, likewise"),
     ("reports", "the profile --reports, likewise"),

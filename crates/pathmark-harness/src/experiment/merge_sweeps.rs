@@ -209,7 +209,7 @@ fn run_of(parts: &[Part], command: &str) -> RunFile {
         until: Some(goals.join(", ")).filter(|goals| !goals.is_empty()),
         // The limits of matrices applied if they did in any part.
         uncapped: parts.iter().all(|part| part.run.uncapped),
-        against: first.against.clone().filter(|_| parts.iter().all(|part| part.run.against.is_some())),
+        baseline: first.baseline.clone().filter(|_| parts.iter().all(|part| part.run.baseline.is_some())),
         // Both builds' rows get the same number, because both were measured by the same parts.
         sweep: sweeps.map(|sweeps| digest::of_text(&sweeps.join(" "))),
         ..first.clone()

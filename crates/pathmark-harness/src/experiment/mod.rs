@@ -2,7 +2,7 @@
 //!
 //! To add one, write `experiments/NAME.toml`: the build embeds every file there, and `pathmark run path/to/NAME.toml` runs any other.
 
-mod against;
+mod baseline;
 mod calibration_file;
 mod cell;
 mod cell_diff;
@@ -43,7 +43,7 @@ mod texts;
 mod time_limit;
 mod together;
 
-pub use against::folder_against;
+pub use baseline::baseline_folder;
 pub use calibration_file::read_calibration;
 pub use cell::{Cell, CellPoint, trace_file};
 pub use cell_diff::{CellDiff, Change};

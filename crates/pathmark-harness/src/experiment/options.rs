@@ -17,7 +17,7 @@ pub struct Options {
     /// Filters `field=value,value...`: a cell is run if it has one of the values of each filter.
     pub filters: Vec<String>,
     /// Another build of the program, which also runs each repetition of each cell.
-    pub against: Option<PathBuf>,
+    pub baseline: Option<PathBuf>,
     /// The part of the cells to run; `None` for all.
     pub shard: Option<SweepShard>,
     /// The figure that compares with serial runs. Filters then keep the serial runs, and there must be at least one.
@@ -43,7 +43,7 @@ impl Options {
             resume: false,
             repetitions: None,
             filters: Vec::new(),
-            against: None,
+            baseline: None,
             shard: None,
             serial_for: None,
             until: None,

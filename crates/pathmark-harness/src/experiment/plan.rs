@@ -163,8 +163,8 @@ impl Sweep<'_> {
                 images.extend(cell.points.iter().map(|point| (point.image.as_str(), pixels(cell))));
             }
         }
-        if let Some(within) = self.until.as_ref().and_then(|until| until.within) {
-            let share = (within.as_secs_f64() / plan.cells_s).min(1.0);
+        if let Some(max_time) = self.until.as_ref().and_then(|until| until.max_time) {
+            let share = (max_time.as_secs_f64() / plan.cells_s).min(1.0);
             plan.cells_s *= share;
             plan.rows = (plan.rows as f64 * share).ceil() as usize;
         }

@@ -60,7 +60,7 @@ pub const MESSAGES: &str = "messages.json";
 
 /// Times messages between two processes and writes the file; `Ok(false)` if there is no launcher.
 pub(super) fn write_messages(path: &Path) -> Result<bool> {
-    let arguments = ["message-costs", "--json"].map(OsString::from);
+    let arguments = ["inspect", "messages", "--json"].map(OsString::from);
     let Some(printed) = printed_by_ranks(2, &arguments)? else { return Ok(false) };
     atomic_file::write(path, |file| file.write_all(&printed))?;
     Ok(true)

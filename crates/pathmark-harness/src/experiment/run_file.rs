@@ -34,8 +34,8 @@ pub struct RunFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shard: Option<String>,
     /// The other program whose rows were measured in turns with these; `None` without one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub against: Option<String>,
+    #[serde(default, alias = "against", skip_serializing_if = "Option::is_none")]
+    pub baseline: Option<String>,
     /// The number of the sweep that measured these rows in turns with the other program's; rows of one number are pairs.
     /// `None` without another program, and in older files.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -75,7 +75,7 @@ impl RunFile {
             set: Vec::new(),
             profile: Profile::Quick.name().to_string(),
             shard: None,
-            against: None,
+            baseline: None,
             sweep: None,
             rows: None,
             until: None,
@@ -140,8 +140,8 @@ impl Sweep<'_> {
             set: definition.set.clone(),
             profile: options.profile.name().to_string(),
             shard: options.shard.map(|shard| shard.to_string()),
-            against: options.against.as_ref().map(|program| program.display().to_string()),
-            sweep: options.against.as_ref().map(|_| sweep_number()),
+            baseline: options.baseline.as_ref().map(|program| program.display().to_string()),
+            sweep: options.baseline.as_ref().map(|_| sweep_number()),
             rows: Some(cells.iter().map(rows).sum()),
             until: until.as_ref().map(|until| until.text.clone()),
             uncapped: options.say_how_often(),

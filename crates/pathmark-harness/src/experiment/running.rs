@@ -1,6 +1,6 @@
 //! A running sweep: runs cells, checks their rows and appends them.
 
-use super::against::Against;
+use super::baseline::Baseline;
 use super::drift::Drift;
 use super::records_file::RecordsFile;
 use super::stopping_rule::{Decisions, Goal};
@@ -17,7 +17,7 @@ pub(super) struct Running<'a> {
     sweep: &'a Sweep<'a>,
     folder: PathBuf,
     references: Vec<(&'a Reference, [HalfFile; 2])>,
-    against: Option<Against>,
+    baseline: Option<Baseline>,
     file: RecordsFile,
     progress: &'a dyn Progress,
     /// Cells and repetitions that have a row.
@@ -46,7 +46,7 @@ impl<'a> Running<'a> {
         sweep: &'a Sweep<'a>,
         folder: PathBuf,
         references: Vec<(&'a Reference, [HalfFile; 2])>,
-        against: Option<Against>,
+        baseline: Option<Baseline>,
         (file, done): (RecordsFile, Vec<Record>),
         limits: Limits<'a>,
         progress: &'a dyn Progress,
@@ -65,7 +65,7 @@ impl<'a> Running<'a> {
             sweep,
             folder,
             references,
-            against,
+            baseline,
             file,
             progress,
             finished: HashSet::new(),
@@ -114,15 +114,16 @@ impl<'a> Running<'a> {
         let job = self.sweep.job(cell, (repetition, self.order), &self.folder, &self.references, self.lowest_seed);
         let limit = self.limits.limit(cell);
         let (mut others, other_first) = (Vec::new(), (u64::from(repetition) + index as u64) % 2 == 1);
-        let mut run_against =
-            || self.against.as_mut().map_or(Ok(()), |against| against.run(&job, limit).map(|rows| others.extend(rows)));
+        let mut run_baseline = || {
+            self.baseline.as_mut().map_or(Ok(()), |baseline| baseline.run(&job, limit).map(|rows| others.extend(rows)))
+        };
         if other_first {
-            run_against()?;
+            run_baseline()?;
         }
         // A curve that was killed between two rows is rendered again, and only the missing rows are added.
         let rows = job.run_in_child(limit);
         if !other_first {
-            run_against()?;
+            run_baseline()?;
         }
         self.summary.other_rows += others.len();
         for other in others {
@@ -194,7 +195,7 @@ impl<'a> Running<'a> {
         let cells = &self.sweep.cells;
         let count = cells.iter().map(|cell| cell.points.len()).sum();
         let is_decided = |index: usize, point: &CellPoint| {
-            if self.against.is_some() {
+            if self.baseline.is_some() {
                 return self.decisions.is_decided(&point.id, count, limit);
             }
             let serial = self.serial[index].map(|serial| &cells[serial].points);
@@ -203,7 +204,7 @@ impl<'a> Running<'a> {
         };
         let is_open = |index: usize| cells[index].points.iter().any(|point| !is_decided(index, point));
         let serial: HashSet<usize> = self.serial.iter().flatten().copied().collect();
-        let serves_only = |index: usize| self.against.is_none() && serial.contains(&index);
+        let serves_only = |index: usize| self.baseline.is_none() && serial.contains(&index);
         let open: HashSet<usize> = (0..cells.len()).filter(|index| !serves_only(*index) && is_open(*index)).collect();
         let beside: HashSet<usize> =
             open.iter().filter_map(|own| self.serial[*own]).filter(|own| serves_only(*own)).collect();

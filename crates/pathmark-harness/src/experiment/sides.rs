@@ -1,6 +1,5 @@
 //! The two measurements of a comparison: their experiments, rows, and the cells that the new one lost.
 
-use super::against::folder_against;
 use super::instructions;
 use super::records_file::{RECORDS, read_records};
 use super::run_file::{MACHINE, RunFile, read_run_file};
@@ -121,20 +120,20 @@ impl Side {
     /// Whether its rows and the other's were measured in turns, by one sweep.
     pub(super) fn is_in_turns_with(&self, other: &Self) -> bool {
         let [Some(own), Some(others)] = [&self.run, &other.run] else { return false };
-        if own.against.is_none() || others.against.is_none() {
+        if own.baseline.is_none() || others.baseline.is_none() {
             return false;
         }
         match (&own.sweep, &others.sweep) {
             // Older sweeps have no number, but one of them left both folders if one lies below the other.
-            (None, None) => [(self, other), (other, self)].into_iter().any(|(new, old)| new.has_against(old)),
+            (None, None) => [(self, other), (other, self)].into_iter().any(|(new, old)| new.has_baseline(old)),
             (own, others) => own == others,
         }
     }
 
-    /// Whether the other folder is where a sweep into this folder leaves the rows of its other build.
-    fn has_against(&self, other: &Self) -> bool {
+    /// Whether the other folder is where an old sweep into this folder left the rows of its other build.
+    fn has_baseline(&self, other: &Self) -> bool {
         let [own, others] = [self, other].map(|side| fs::canonicalize(&side.path).ok());
-        let below = own.as_deref().and_then(|own| Some(folder_against(own.parent()?, own.file_name()?.to_str()?)));
+        let below = own.as_deref().and_then(|own| Some(own.parent()?.join("against").join(own.file_name()?)));
         below.is_some() && below == others
     }
 }

@@ -1,6 +1,6 @@
 //! Repetitions until a goal is reached: `run EXPERIMENT --until 3%`, or `repetitions = { until = "3 %" }` in its file.
 //!
-//! With a share as the goal, cells are decided one by one. With another build beside this one (`--against OLD`), a cell is decided when the
+//! With a share as the goal, cells are decided one by one. With another build beside this one (`--baseline OLD`), a cell is decided when the
 //! interval of its ratio of times lies above 1 plus the limit, below 1, or within the limit of 1. Otherwise it is decided when its speedup over
 //! the serial run of its image, or its time where there is no serial run, is known to within the limit. With `fastest` or `order` as the goal, the
 //! schedules of an image are compared with each other.
@@ -59,22 +59,23 @@ pub struct StoppingRule {
     /// The goal as the user gave it.
     pub text: String,
     /// The time after which no repetition begins, from the start of the first one.
-    pub within: Option<Duration>,
+    pub max_time: Option<Duration>,
 }
 
 impl StoppingRule {
     /// Parses a goal (`3%`, `0.03`, `fastest` or `order`) and a time (`60s`).
-    pub fn parse(goal: &str, within: Option<&str>) -> Result<Self> {
+    pub fn parse(goal: &str, max_time: Option<&str>) -> Result<Self> {
         let length = |text: &str| -> Result<Duration> {
             let wrong = || {
-                InputError::new("within", text, "is not a duration").allowed("a number with a unit, as in 60s or 2min")
+                InputError::new("max-time", text, "is not a duration")
+                    .allowed("a number with a unit, as in 60s or 2min")
             };
             Ok(humantime::parse_duration(text).map_err(|_| wrong())?)
         };
-        let within = within.map(length).transpose()?;
+        let max_time = max_time.map(length).transpose()?;
         let word = Goal::WORDS.iter().find(|(word, _)| *word == goal.trim());
         let goal_of = word.map_or_else(|| share(goal).map(Goal::Share), |(_, goal)| Ok(*goal));
-        Ok(Self { goal: goal_of?, text: goal.to_string(), within })
+        Ok(Self { goal: goal_of?, text: goal.to_string(), max_time })
     }
 
     /// The goal of a sweep: the command's, or the definition's if the command sets neither goal nor repetitions.
@@ -99,7 +100,7 @@ impl StoppingRule {
 
     /// Whether the time limit has passed, so that no repetition may begin.
     pub(super) fn is_over(&self, elapsed: Duration) -> bool {
-        self.within.is_some_and(|within| elapsed >= within)
+        self.max_time.is_some_and(|max_time| elapsed >= max_time)
     }
 }
 
@@ -112,8 +113,8 @@ impl Options {
 
 /// Checks that a sweep compares all schedules of its images with each other; the error says why it does not.
 fn is_of_all_schedules(options: &Options) -> std::result::Result<(), &'static str> {
-    match (&options.against, &options.shard) {
-        (Some(_), _) => Err("compares schedules with each other, but --against compares each with another build"),
+    match (&options.baseline, &options.shard) {
+        (Some(_), _) => Err("compares schedules with each other, but --baseline compares each with another build"),
         (_, Some(_)) => Err("compares all schedules of an image, but a part of a sweep has only some of them"),
         (None, None) => Ok(()),
     }

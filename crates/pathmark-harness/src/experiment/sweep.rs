@@ -1,6 +1,6 @@
 //! Sweeps: check an experiment, then run its cells and append their rows.
 
-use super::against::{Against, check_program, folder_against};
+use super::baseline::{Baseline, baseline_folder, check_program};
 use super::calibration_file::write_calibration;
 use super::cell::trace_file;
 use super::formula;
@@ -95,9 +95,9 @@ impl<'a> Sweep<'a> {
                 checked.map_err(|error| definition.reference_error(options.profile, error))?;
             }
         }
-        if let Some(program) = &options.against {
+        if let Some(program) = &options.baseline {
             check_program(program)?;
-            let rows = folder_against(&options.out, &definition.name).join("records.csv");
+            let rows = baseline_folder(&options.out, &definition.name).join("records.csv");
             files.claims("out", &rows)?;
             if rows.exists() {
                 let error = InputError::new("out", rows.display().to_string(), "already exists");
@@ -126,9 +126,9 @@ impl<'a> Sweep<'a> {
         let folder = options.out.join(&definition.name);
         let run = self.run_file()?;
         let (file, done) = open(definition, options, &run, &folder)?;
-        let other = options.against.as_deref();
-        let against = other
-            .map(|program| Against::open(program, &options.out, &definition.name, &definition.text, run.clone()))
+        let other = options.baseline.as_deref();
+        let baseline = other
+            .map(|program| Baseline::open(program, &options.out, &definition.name, &definition.text, run.clone()))
             .transpose()?;
 
         let calibration = folder.join("calibration.csv");
@@ -159,7 +159,7 @@ impl<'a> Sweep<'a> {
 
         let repetitions = self.repetitions()?;
         let rows = (file, done);
-        let mut running = Running::new(self, folder, references, against, rows, Limits::of(self)?, progress);
+        let mut running = Running::new(self, folder, references, baseline, rows, Limits::of(self)?, progress);
         let total: u64 = cells.iter().map(|cell| cell.weight * u64::from(cell.repetitions(repetitions))).sum();
         let without_limit = cells.iter().filter(|cell| cell.at_most.is_none()).count();
         let (mut units, begun, mut open) = (0, Instant::now(), without_limit);

@@ -80,7 +80,7 @@ impl<const PROFILE: bool> Table<PROFILE> {
 #[serde(
     untagged,
     deny_unknown_fields,
-    expecting = "expected a number or { until = \"3 %\", at-most = 200, within = \"60 s\" }"
+    expecting = "expected a number or { until = \"3 %\", at-most = 200, max-time = \"60 s\" }"
 )]
 enum Repetitions {
     Count(u32),
@@ -88,7 +88,8 @@ enum Repetitions {
     StoppingRule {
         until: String,
         at_most: Option<u32>,
-        within: Option<String>,
+        #[serde(alias = "within")]
+        max_time: Option<String>,
     },
 }
 
@@ -184,9 +185,9 @@ impl<'de, const PROFILE: bool> Visitor<'de> for TableVisitor<PROFILE> {
                 (None, "repetitions") if !PROFILE => table.at_most = Some(map.next_value::<NonZeroU32>()?.get()),
                 (None, "repetitions") => match map.next_value()? {
                     Repetitions::Count(count) => (table.repetitions, table.until) = (count, None),
-                    Repetitions::StoppingRule { until, at_most, within } => {
+                    Repetitions::StoppingRule { until, at_most, max_time } => {
                         table.repetitions = at_most.unwrap_or(MOST_REPETITIONS);
-                        table.until = Some(StoppingRule::parse(&until, within.as_deref()).map_err(M::Error::custom)?);
+                        table.until = Some(StoppingRule::parse(&until, max_time.as_deref()).map_err(M::Error::custom)?);
                     }
                 },
                 (None, TIMEOUT) => table.timeout = Some(map.next_value()?),

@@ -6,7 +6,7 @@ use crate::kernel::{Counts, Kernel, one_sample};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// A sample that was NaN, infinite or negative, with its address: `pathmark replay --pixel X,Y --sample K` renders it
+/// A sample that was NaN, infinite or negative, with its address: `pathmark inspect path --pixel X,Y --sample K` renders it
 /// again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct InvalidSample {

@@ -186,7 +186,7 @@ columns! {
         pub image_write_s: Option<f64>,
         /// Checksum of the film; empty if the sampler draws different random numbers in each run.
         pub checksum: String,
-        /// Warnings, separated by semicolons; `pathmark explain` describes them.
+        /// Warnings, separated by semicolons; `pathmark list warnings` explains them.
         pub warnings: String,
         /// Why the run failed; empty if it did not.
         pub error: String,

@@ -148,7 +148,7 @@ pub const WARNINGS: &[WarningEntry] = &[
     WarningEntry {
         name: "escaped",
         about: "Rays left a closed scene.",
-        advice: "Look for gaps between the walls; `pathmark replay` shows single paths.",
+        advice: "Look for gaps between the walls; `pathmark inspect path` shows single paths.",
     },
     WarningEntry {
         name: "truncated",
@@ -163,7 +163,7 @@ pub const WARNINGS: &[WarningEntry] = &[
     WarningEntry {
         name: "invalid-samples",
         about: "Samples were NaN, infinite or negative; they contribute nothing to the image.",
-        advice: "Use `pathmark replay` with the place in the brackets to see the path, and report it as a fault.",
+        advice: "Use `pathmark inspect path` with the place in the brackets to see the path, and report it as a fault.",
     },
     WarningEntry {
         name: "no-program",

@@ -250,7 +250,7 @@ impl Needs<'_> {
 
 fn some_cases(ids: Vec<String>) -> Result<Vec<String>> {
     if ids.is_empty() {
-        return Err(InputError::new("ids", "", "names no hard case").allowed("names of `pathmark check`").into());
+        return Err(InputError::new("ids", "", "names no hard case").allowed("names of `pathmark selftest`").into());
     }
     Ok(ids)
 }

@@ -189,7 +189,8 @@ impl ScheduleData {
         if jobs.len() <= MOST_JOBS {
             return Self { title, workers, end, jobs };
         }
-        let title = format!("{title}; its {} jobs are too many for a page, and pathmark trace draws them", jobs.len());
+        let title =
+            format!("{title}; its {} jobs are too many for a page, and pathmark inspect jobs draws them", jobs.len());
         Self { title, workers: 0, end: 0.0, jobs: Vec::new() }
     }
 }

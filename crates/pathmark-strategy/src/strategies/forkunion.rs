@@ -1,6 +1,6 @@
 //! `forkunion`: a C++ pool whose workers wait for the next run without system calls.
 //!
-//! `pathmark render cornell --strategy forkunion --threads 4`, in a build with `--features forkunion`, which needs a C++ compiler.
+//! `pathmark render cornell --strategy forkunion --threads 4`, in a build with `--features more-pools`, which needs a C++ compiler.
 //!
 //! The crate `forkunion`, over the C++ library of that name, with its `for_n_dynamic`: a free worker takes the next
 //! job. A run takes no lock and makes no system call.

@@ -7,7 +7,7 @@ mod chili;
 mod dynamic;
 mod factoring;
 mod fixed_pool;
-#[cfg(feature = "forkunion")]
+#[cfg(feature = "more-pools")]
 mod forkunion;
 mod guided;
 mod mfac;
@@ -20,6 +20,7 @@ mod openmp_dynamic;
 mod openmp_guided;
 #[cfg(feature = "openmp")]
 mod openmp_static;
+#[cfg(feature = "more-pools")]
 mod orx_parallel;
 mod paralight;
 mod range_stealing;
@@ -68,8 +69,9 @@ pub static STRATEGIES: &[Entry] = &[
     rayon_scope::ENTRY,
     chili::ENTRY,
     paralight::ENTRY,
+    #[cfg(feature = "more-pools")]
     orx_parallel::ENTRY,
-    #[cfg(feature = "forkunion")]
+    #[cfg(feature = "more-pools")]
     forkunion::ENTRY,
     #[cfg(feature = "openmp")]
     openmp_static::ENTRY,
@@ -77,6 +79,20 @@ pub static STRATEGIES: &[Entry] = &[
     openmp_dynamic::ENTRY,
     #[cfg(feature = "openmp")]
     openmp_guided::ENTRY,
+];
+
+/// The strategies that this build lacks, each with the feature that adds it.
+pub static LEFT_OUT: &[(&str, &str)] = &[
+    #[cfg(not(feature = "more-pools"))]
+    ("orx-parallel", "more-pools"),
+    #[cfg(not(feature = "more-pools"))]
+    ("forkunion", "more-pools"),
+    #[cfg(not(feature = "openmp"))]
+    ("openmp-static", "openmp"),
+    #[cfg(not(feature = "openmp"))]
+    ("openmp-dynamic", "openmp"),
+    #[cfg(not(feature = "openmp"))]
+    ("openmp-guided", "openmp"),
 ];
 
 /// Returns the strategy called `name`.
@@ -96,5 +112,8 @@ mod tests {
         assert_eq!(names.len(), STRATEGIES.len());
         assert!(STRATEGIES.iter().all(|entry| find(entry.name).is_some_and(|found| found.about == entry.about)));
         assert!(find("no-such-strategy").is_none());
+        assert!(LEFT_OUT.iter().all(|(name, _)| find(name).is_none()));
+        // Of all features together, a build has a strategy or knows that it lacks it.
+        assert_eq!(STRATEGIES.len() + LEFT_OUT.len(), 29);
     }
 }

@@ -1,6 +1,7 @@
 //! Orx-parallel: a free worker takes the next C jobs from a concurrent iterator.
 //!
-//! `pathmark render cornell --strategy orx-parallel:8 --threads 4`; without a number C is 1.
+//! `pathmark render cornell --strategy orx-parallel:8 --threads 4`, in a build with `--features more-pools`; without a
+//! number C is 1.
 //!
 //! The crate `orx-parallel` does not split a loop: all workers pull chunks from one shared iterator, which for a range
 //! is a counter. So it hands out jobs like `dynamic`. By default it adapts the chunk size as it learns the cost of

@@ -54,6 +54,7 @@ impl Pool {
     }
 
     /// Returns rayon's pool.
+    #[cfg(feature = "more-pools")]
     pub(super) fn rayon(&self) -> &ThreadPool {
         &self.pool
     }

@@ -42,6 +42,7 @@ fn every_strategy_keeps_the_contract() {
 const PARAMETERS: &[(&str, &[&str])] = &[
     ("dynamic", &["1", "2", "7", "5000"]),
     ("mfac", &["0", "50", "100000"]),
+    #[cfg(feature = "more-pools")]
     ("orx-parallel", &["1", "7", "5000"]),
     ("steal-one", &["neighbour", "random", "richest"]),
     ("steal-half", &["neighbour", "random", "richest"]),

@@ -1,6 +1,6 @@
-//! `pathmark reference SCENE`: the two half-references against which images are measured.
+//! `pathmark image reference SCENE`: the two half-references against which images are measured.
 
-use crate::console::Talk;
+use crate::console::Console;
 use crate::console::output::print;
 use crate::error::Result;
 use crate::experiment::{Progress as _, Reference, ReferenceError, check_until, refine_reference, render_reference};
@@ -11,7 +11,7 @@ use clap::Args;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// `pathmark reference cornell --spp 4096 --size 256x192`
+/// `pathmark image reference cornell --spp 4096 --size 256x192`
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// A scene of `pathmark list scenes`, or the path of a .toml file
@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
 /// Samples per pixel at which refining starts.
 const FIRST_SPP: u32 = 16;
 
-pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     let (width, height) = parse_size(&arguments.size)?;
     let reference = Reference {
         scene: arguments.scene.clone(),
@@ -55,14 +55,14 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let mut files = Files::default();
     let scene = lab.load_scene(&arguments.scene)?;
     files.reads_scene(&scene.files);
-    scene.remarks_in(&scene.camera.view(width, height)).iter().for_each(|remark| talk.note(remark));
+    scene.remarks_in(&scene.camera.view(width, height)).iter().for_each(|remark| console.note(remark));
     for path in reference.paths(lab, &arguments.out)? {
         files.claims("out", &path)?;
     }
     create_folder("out", &arguments.out)?;
     let halves = match arguments.until {
-        Some(rmse) => refine_reference(lab, &reference, rmse, &arguments.out, talk)?,
-        None => render_reference(lab, &reference, &arguments.out, talk)?,
+        Some(rmse) => refine_reference(lab, &reference, rmse, &arguments.out, console)?,
+        None => render_reference(lab, &reference, &arguments.out, console)?,
     };
     let [(first, a), (second, b)] = &halves;
     print(&format!("{}\n{}\n{}", first.display(), second.display(), ReferenceError::of(a, b)))

@@ -1,13 +1,13 @@
-//! `mpiexec -n 2 pathmark message-costs`: the costs of MPI messages on this machine.
+//! `mpiexec -n 2 pathmark inspect messages`: the costs of MPI messages on this machine.
 
 use crate::cluster::{Cluster, MessageCost, MessageCosts};
 use crate::console::output::{print, print_json};
 use crate::error::Result;
+use crate::verbs::ranks::library;
 use clap::Args;
-use std::env;
 use std::path::PathBuf;
 
-/// `mpiexec -n 2 pathmark message-costs`
+/// `mpiexec -n 2 pathmark inspect messages`
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// MPI library: auto, or the path of one [default: auto, or `PATHMARK_MPI`]
@@ -16,12 +16,6 @@ pub(crate) struct Arguments {
     /// Print the costs as one JSON object
     #[arg(long)]
     json: bool,
-}
-
-/// The library that the user names in the option or the environment; `None` if the program is to find one.
-pub(super) fn library(option: Option<&PathBuf>) -> Option<PathBuf> {
-    let named = option.cloned().or_else(|| env::var_os("PATHMARK_MPI").map(PathBuf::from));
-    named.filter(|path| path.as_os_str() != "auto")
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<()> {

@@ -7,12 +7,12 @@ use crate::program::{finish, pathmark};
 #[test]
 fn cases_can_be_chosen() {
     let folder = tempfile::tempdir().unwrap();
-    let shown = run(folder.path(), &["check", "P10"]).out;
+    let shown = run(folder.path(), &["selftest", "P10"]).out;
     assert!(shown.contains("P10  pass") && shown.contains("bsdf, NaN: counted: expected"), "{shown}");
-    let found = json(&run(folder.path(), &["check", "P10", "--json"]).out);
+    let found = json(&run(folder.path(), &["selftest", "P10", "--json"]).out);
     let case = &found["cases"][0];
     assert!(case["id"] == "P10" && case["pass"] == true && case["trials"].as_array().is_some_and(|all| all.len() > 9));
-    let refused = finish(pathmark(folder.path(), &["check", "P10", "Z9"])).with_code(2);
+    let refused = finish(pathmark(folder.path(), &["selftest", "P10", "Z9"])).with_code(2);
     assert!(refused.err.contains("case = Z9") && refused.err.contains("P10"), "{}", refused.err);
 }
 

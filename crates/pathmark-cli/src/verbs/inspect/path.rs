@@ -1,6 +1,5 @@
-//! `pathmark replay SCENE`: one sample's path, bounce by bounce.
+//! `pathmark inspect path SCENE`: one sample's path, bounce by bounce.
 
-use super::axes::{What, no_paths};
 use crate::console::output::{self, print, print_json};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::{self, Event, Inspector, PathLog, RenderOptions, Spec};
@@ -11,11 +10,12 @@ use crate::plot::number;
 use crate::scene::Scene;
 use crate::shell;
 use crate::simd::Precision;
+use crate::verbs::axes::{What, no_paths};
 use clap::Args;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
-/// `pathmark replay cornell --pixel 300,250 --sample 3`
+/// `pathmark inspect path cornell --pixel 300,250 --sample 3`
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// A scene of `pathmark list scenes`, or the path of a .toml file
@@ -87,12 +87,14 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
 }
 
 /// The command that replays a sample of an image, with every option that changes the sample.
-pub(super) fn command(scene: &str, settings: &Settings, at: InvalidSample) -> String {
+pub(in crate::verbs) fn command(scene: &str, settings: &Settings, at: InvalidSample) -> String {
     let axes = AXES.iter().filter(|axis| axis.changes_image && (!axis.about.is_empty() || axis.name == "seed"));
     let values = axes.map(|axis| (axis.name, axis.show(settings))).filter(|(_, value)| !value.is_empty());
     let options = values.flat_map(|(name, value)| [format!("--{name}"), value]);
     let place = ["--pixel".to_string(), format!("{},{}", at.x, at.y), "--sample".to_string(), at.sample.to_string()];
-    shell::command(["replay".to_string(), scene.to_string()].into_iter().chain(options).chain(place))
+    shell::command(
+        ["inspect".to_string(), "path".to_string(), scene.to_string()].into_iter().chain(options).chain(place),
+    )
 }
 
 fn pixel(text: &str, spec: &Spec) -> Result<(u32, u32)> {
@@ -246,7 +248,7 @@ mod tests {
     #[test]
     fn a_told_command_is_of_the_same_sample_on_every_axis() {
         let base = || Spec { width: 8, height: 6, estimator: "bsdf".into(), ..Spec::default() };
-        // A new axis must be added to the list below, unless it changes no sample, like the last four here. `replay` shows
+        // A new axis must be added to the list below, unless it changes no sample, like the last four here. `inspect path` shows
         // samples before any clamp.
         let Spec {
             width: _,

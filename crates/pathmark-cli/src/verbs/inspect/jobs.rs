@@ -1,7 +1,7 @@
-//! `pathmark trace FILE`: one run, job by job.
+//! `pathmark inspect jobs FILE`: one run, job by job.
 
 use crate::atomic_file;
-use crate::console::Talk;
+use crate::console::Console;
 use crate::console::output::{counted, print};
 use crate::error::{Error, InputError, Result};
 use crate::experiment::Progress as _;
@@ -12,7 +12,7 @@ use crate::report::timeline;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-/// `pathmark trace run.csv -o run.svg`, after `pathmark render cornell --trace run.csv`
+/// `pathmark inspect jobs run.csv -o run.svg`, after `pathmark render cornell --trace run.csv`
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// A file that `render --trace` wrote, or a file in an experiment's folder `traces`
@@ -22,14 +22,14 @@ pub(crate) struct Arguments {
     output: Option<PathBuf>,
 }
 
-pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let write = arguments.output.as_deref().map(|path| Ok::<_, Error>((path, writer(path)?))).transpose()?;
     let mut files = Files::default();
     files.reads("the trace", &arguments.file);
     arguments.output.as_ref().map_or(Ok(()), |path| files.writes("output", path))?;
     let trace = TraceFile::read(&arguments.file)?;
     if let Some(doubt) = trace.doubt() {
-        talk.note(&doubt);
+        console.note(&doubt);
     }
     let Some(balance) = timeline::balance(&trace) else {
         let problem = "contains invalid worker numbers or times";

@@ -1,4 +1,4 @@
-//! `pathmark completions SHELL`: a script that completes verbs, options and their values.
+//! `pathmark shell completions SHELL`: a script that completes verbs, options and their values.
 
 use crate::console::output::print_verbatim;
 use crate::described;
@@ -7,7 +7,7 @@ use crate::shell;
 use clap::Args;
 use clap_complete::Shell;
 
-/// `pathmark completions bash > /etc/bash_completion.d/pathmark`
+/// `pathmark shell completions bash > /etc/bash_completion.d/pathmark`
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// The shell

@@ -7,12 +7,12 @@ use crate::measure::Provenance;
 use std::path::Path;
 
 /// Whether the file is named as a film, which keeps sums in full precision.
-pub(super) fn is_film(path: &Path) -> bool {
+pub(in crate::verbs) fn is_film(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == "film")
 }
 
 /// Reads a picture, and its provenance if the file has it.
-pub(super) fn read(path: &Path) -> Result<(Image, Option<Provenance>)> {
+pub(in crate::verbs) fn read(path: &Path) -> Result<(Image, Option<Provenance>)> {
     let is_film = is_film(path);
     if is_film && !path.exists() {
         return Err(InputError::new("image", path.display().to_string(), "there is no such file").into());

@@ -1,4 +1,4 @@
-//! `pathmark compare IMAGE REFERENCE [HALF]`: the error of an image against another, or against two references without
+//! `pathmark image compare IMAGE REFERENCE [HALF]`: the error of an image against another, or against two references without
 //! their noise.
 
 use super::picture;
@@ -17,14 +17,14 @@ use std::path::PathBuf;
 /// Confidence of the cross form's interval.
 const LEVEL: f64 = 0.95;
 
-/// `pathmark compare box.pfm reference.exr --heatmap error.png`
+/// `pathmark image compare box.pfm reference.exr --heatmap error.png`
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// The image: a picture or a film file
     image: PathBuf,
     /// The reference: a picture or a film file
     reference: PathBuf,
-    /// A second reference that shares no samples with the first, as `pathmark reference` makes them: the error then excludes their noise, and has
+    /// A second reference that shares no samples with the first, as `pathmark image reference` makes them: the error then excludes their noise, and has
     /// an interval
     half: Option<PathBuf>,
     /// Write a picture of each pixel's error

@@ -1,8 +1,7 @@
-//! `pathmark bounces SCENE`: the light of an image by number of bounces, and the lengths of its paths.
+//! `pathmark inspect bounces SCENE`: the light of an image by number of bounces, and the lengths of its paths.
 
-use super::axes::{Samples, no_paths};
 use crate::atomic_file;
-use crate::console::Talk;
+use crate::console::Console;
 use crate::console::output::{number, print, print_json};
 use crate::error::Result;
 use crate::experiment::Progress;
@@ -10,13 +9,14 @@ use crate::files::Files;
 use crate::kernel::{Inspector, LightByBounce, Spec};
 use crate::lab::Lab;
 use crate::plot::number::short;
+use crate::verbs::axes::{Samples, no_paths};
 use clap::Args;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// `pathmark bounces cornell --size 128x96 --spp 16`
+/// `pathmark inspect bounces cornell --size 128x96 --spp 16`
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -35,25 +35,25 @@ const SHOWN: usize = 16;
 /// Report A says that Russian roulette ends paths before this number of bounces.
 const REPORTED: usize = 6;
 
-pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     let settings = arguments.samples.settings(lab)?;
     let setup = lab.prepare(settings)?;
-    setup.remarks().iter().for_each(|remark| talk.note(remark));
+    setup.remarks().iter().for_each(|remark| console.note(remark));
     let Some((scene, choice)) = setup.scene() else { return Err(no_paths(&arguments.samples.scene)) };
     let spec = &setup.settings().spec;
     let mut files = Files::default();
     files.reads_scene(setup.files());
     arguments.csv.as_ref().map_or(Ok(()), |path| files.writes("csv", path))?;
     let inspector = Inspector::new(scene, choice)?;
-    talk.begin(&format!("{} at {} spp", scene.name, arguments.samples.spp), u64::from(spec.height));
+    console.begin(&format!("{} at {} spp", scene.name, arguments.samples.spp), u64::from(spec.height));
     let mut found = LightByBounce::default();
     for y in 0..spec.height {
         found.add(&LightByBounce::of(&inspector, spec.width, y..y + 1, &(0..arguments.samples.spp)));
-        talk.advance(u64::from(y) + 1);
+        console.advance(u64::from(y) + 1);
     }
-    talk.end();
+    console.end();
     if found.invalid > 0 {
-        talk.note(&format!("warning: {} samples had no valid radiance and are left out", found.invalid));
+        console.note(&format!("warning: {} samples had no valid radiance and are left out", found.invalid));
     }
 
     let rows = rows(&found);

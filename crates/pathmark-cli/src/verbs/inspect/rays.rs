@@ -1,9 +1,8 @@
-//! `pathmark rays SCENE`: rays per second of the search for the first hit, along the rays of paths.
+//! `pathmark inspect rays SCENE`: rays per second of the search for the first hit, along the rays of paths.
 
-use super::axes::{Samples, no_paths};
 use crate::analysis::quantile::{median, median_interval};
 use crate::atomic_file;
-use crate::console::Talk;
+use crate::console::Console;
 use crate::console::output::{number, print, print_json};
 use crate::error::{InputError, Result};
 use crate::experiment::LARGEST_REPETITIONS;
@@ -15,6 +14,7 @@ use crate::math::Vec3;
 use crate::measure::{Settings, Setup};
 use crate::plot::number::short;
 use crate::scene::Scene;
+use crate::verbs::axes::{Samples, no_paths};
 use clap::{Args, value_parser};
 use serde_json::json;
 use std::io::{self, Write};
@@ -22,7 +22,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// `pathmark rays bumpy-ball:20000 --precision f32`
+/// `pathmark inspect rays bumpy-ball:20000 --precision f32`
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -41,10 +41,10 @@ pub(crate) struct Arguments {
 /// Confidence of the interval around the median, if there are enough repetitions.
 const LEVEL: f64 = 0.95;
 
-pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     let settings = arguments.samples.settings(lab)?;
     let setup = lab.prepare(settings)?;
-    setup.remarks().iter().for_each(|remark| talk.note(remark));
+    setup.remarks().iter().for_each(|remark| console.note(remark));
     let Some((scene, choice)) = setup.scene() else { return Err(no_paths(&arguments.samples.scene)) };
     check_paths(&setup)?;
     let mut files = Files::default();
@@ -56,9 +56,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
             return Err(InputError::new("scene", &scene.name, problem).allowed("a scene of triangles").into());
         }
     }
-    talk.begin(&format!("paths of {}", scene.name), 1);
+    console.begin(&format!("paths of {}", scene.name), 1);
     let rays = path_rays(scene, choice, &(0..arguments.samples.spp))?;
-    talk.end();
+    console.end();
     if let Some(path) = &arguments.export {
         atomic_file::write(path, |file| export(scene, &rays, file))?;
     }

@@ -1,13 +1,13 @@
 //! Progress of several experiments together: one bar, in milliseconds of their estimate.
 
-use crate::console::Talk;
+use crate::console::Console;
 use crate::experiment::{Plan, Progress};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// The progress of all experiments for a `Talk`, from the progress of each experiment.
-pub(super) struct Whole<'a> {
-    talk: &'a Talk,
+/// The progress of all experiments for a `Console`, from the progress of each experiment.
+pub(super) struct OverallProgress<'a> {
+    console: &'a Console,
     total_s: f64,
     place: Mutex<Place>,
     pace: Mutex<Pace>,
@@ -51,12 +51,12 @@ struct Place {
     total: u64,
 }
 
-impl<'a> Whole<'a> {
-    pub(super) fn new(talk: &'a Talk, plans: &[Plan]) -> Self {
+impl<'a> OverallProgress<'a> {
+    pub(super) fn new(console: &'a Console, plans: &[Plan]) -> Self {
         let total_s = plans.iter().map(Plan::seconds).sum();
-        talk.begin_steps("all experiments", milliseconds(total_s));
+        console.begin_steps("all experiments", milliseconds(total_s));
         let pace = Pace { at_s: 0.0, at: Instant::now(), estimated_s: 0.0, taken_s: 0.0 };
-        Self { talk, total_s, place: Mutex::new(Place::default()), pace: Mutex::new(pace) }
+        Self { console, total_s, place: Mutex::new(Place::default()), pace: Mutex::new(pace) }
     }
 
     /// Records that the work has reached a second of the estimate; returns the time left in words.
@@ -64,8 +64,8 @@ impl<'a> Whole<'a> {
         let mut pace = self.pace.lock().unwrap_or_else(PoisonError::into_inner);
         pace.watch(at_s);
         let left = format!("about {:.0} min", (pace.factor() * (self.total_s - at_s).max(0.0) / 60.0).ceil());
-        self.talk.left(&left);
-        self.talk.advance(milliseconds(at_s));
+        self.console.left(&left);
+        self.console.advance(milliseconds(at_s));
         left
     }
 
@@ -85,7 +85,7 @@ fn milliseconds(seconds: f64) -> u64 {
     (seconds * 1e3) as u64
 }
 
-impl Progress for Whole<'_> {
+impl Progress for OverallProgress<'_> {
     fn begin(&self, title: &str, total: u64) {
         let mut place = self.place();
         let cells_at = place.start_s + place.plan.references_s;
@@ -96,7 +96,7 @@ impl Progress for Whole<'_> {
             (place.from_s, place.plan.references_s / place.plan.halves.max(1) as f64)
         };
         place.total = total;
-        self.talk.step(title, &self.reach(place.from_s));
+        self.console.step(title, &self.reach(place.from_s));
     }
 
     fn advance(&self, done: u64) {
@@ -106,7 +106,7 @@ impl Progress for Whole<'_> {
     }
 
     fn note(&self, text: &str) {
-        self.talk.note(text);
+        self.console.note(text);
     }
 
     /// Ends a step; the bar continues with the next one.
@@ -116,9 +116,9 @@ impl Progress for Whole<'_> {
     }
 }
 
-impl Drop for Whole<'_> {
+impl Drop for OverallProgress<'_> {
     fn drop(&mut self) {
-        self.talk.end();
+        self.console.end();
     }
 }
 

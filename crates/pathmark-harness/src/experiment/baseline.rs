@@ -1,8 +1,8 @@
-//! A sweep of two builds in turns: `run EXPERIMENT --against OLD`.
+//! A sweep of two builds in turns: `run EXPERIMENT --baseline OLD`.
 //!
 //! Both builds run each repetition of each cell, one right after the other, and alternate in going first. Drift of the
 //! machine's speed affects both rows of a pair equally, so their ratio is free of it. The other build's rows lie in
-//! `OUT/against`, like those of a separate sweep.
+//! `OUT/baseline`, like those of a separate sweep.
 
 use super::cell_process::{CELL_ABOUT, CellJob, PointJob};
 use super::process_group::answer;
@@ -18,13 +18,13 @@ use std::process::Command;
 use std::time::Duration;
 
 /// The folder of the other build's rows, inside the folder of results.
-const FOLDER: &str = "against";
+const FOLDER: &str = "baseline";
 
 /// The time in which a program prints its help. A program of another kind may run for ever.
 const HELP: Duration = Duration::from_mins(1);
 
 /// The other build, and the files for its rows.
-pub(super) struct Against {
+pub(super) struct Baseline {
     program: PathBuf,
     folder: PathBuf,
     run: RunFile,
@@ -33,14 +33,14 @@ pub(super) struct Against {
 }
 
 /// The folder of the other build's rows of an experiment.
-pub fn folder_against(out: &Path, name: &str) -> PathBuf {
+pub fn baseline_folder(out: &Path, name: &str) -> PathBuf {
     out.join(FOLDER).join(name)
 }
 
 /// Refuses a file that is no program, and a program that cannot run cells, before the sweep starts.
 pub(super) fn check_program(program: &Path) -> Result<()> {
     let refused = |problem: &str| {
-        let error = InputError::new("against", program.display().to_string(), problem);
+        let error = InputError::new("baseline", program.display().to_string(), problem);
         Err(error.allowed("another build of pathmark, or of a program with the same command line").into())
     };
     let is_program = fs::metadata(program).is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0);
@@ -67,9 +67,9 @@ fn version_of(program: &Path) -> String {
     told.lines().next().unwrap_or_default().trim().to_string()
 }
 
-impl Against {
+impl Baseline {
     pub(super) fn open(program: &Path, out: &Path, name: &str, text: &str, run: RunFile) -> Result<Self> {
-        let folder = folder_against(out, name);
+        let folder = baseline_folder(out, name);
         fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
         let file = RecordsFile::create(&folder.join("records.csv"))?;
         atomic_file::write(&folder.join("experiment.toml"), |out| out.write_all(text.as_bytes()))?;

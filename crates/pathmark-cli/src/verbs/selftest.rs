@@ -1,9 +1,9 @@
-//! `pathmark check`: the hard cases on this machine, and the costs of guarding against them.
+//! `pathmark selftest`: the hard cases on this machine, and the costs of guarding against them.
 
 use super::{cases, guards};
 use crate::cases_file;
 use crate::check::{self, Case, Effort, Outcome, SECTIONS};
-use crate::console::Talk;
+use crate::console::Console;
 use crate::console::output::{lock_folder, print, print_json};
 use crate::error::{Error, InputError, Result};
 use crate::experiment::Progress as _;
@@ -17,7 +17,7 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// `pathmark check --thorough`
+/// `pathmark selftest --thorough`
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// Cases by name, as in S11 A6, or by first letter [default: all of them, and the price list of the guards]
@@ -44,11 +44,11 @@ struct Row<'a> {
     outcome: &'a Outcome,
 }
 
-pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     let chosen = chosen(&arguments.cases)?;
     let _lock = arguments.out.as_ref().map(|out| folder_for_results(out)).transpose()?;
     let effort = if arguments.thorough { Effort::Thorough } else { Effort::Quick };
-    let outcomes = cases::try_all(&chosen, effort, talk)?;
+    let outcomes = cases::try_all(&chosen, effort, console)?;
     let rows: Vec<Row<'_>> = chosen
         .iter()
         .zip(&outcomes)
@@ -56,7 +56,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         .collect();
     // Guards are timed alone, only if no cases are named, and once for each folder.
     let are_priced = arguments.out.as_ref().is_some_and(|out| guards::are_in(out));
-    let prices = if arguments.cases.is_empty() && !are_priced { guards::measure(talk) } else { Vec::new() };
+    let prices = if arguments.cases.is_empty() && !are_priced { guards::measure(console) } else { Vec::new() };
     if arguments.json {
         print_json(&serde_json::json!({ "cases": rows, "guards": prices }))?;
     } else {
@@ -73,7 +73,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         let written = format!("report in {}", report::write(lab, out)?.display());
         // Standard output holds one JSON object then.
         if arguments.json {
-            talk.note(&written);
+            console.note(&written);
         } else {
             print(&written)?;
         }

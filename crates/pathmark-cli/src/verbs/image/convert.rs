@@ -1,4 +1,4 @@
-//! `pathmark convert FILE -o FILE`: a film or an image in another format.
+//! `pathmark image convert FILE -o FILE`: a film or an image in another format.
 
 use super::picture;
 use crate::console::output::print;
@@ -8,7 +8,7 @@ use crate::image_io;
 use clap::Args;
 use std::path::PathBuf;
 
-/// `pathmark convert out/references/cornell.film -o cornell.exr`
+/// `pathmark image convert out/references/cornell.film -o cornell.exr`
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// A film file or an image
