@@ -1,4 +1,4 @@
-//! The table of hard cases that `pathmark check` prints. `PATHMARK_THOROUGH=1` uses as many random inputs as the
+//! The table of hard cases that `pathmark selftest` prints. `PATHMARK_THOROUGH=1` uses as many random inputs as the
 //! catalogue requires.
 
 use pathmark::check::{Case, Effort, Outcome, cases, find, run};

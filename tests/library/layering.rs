@@ -255,8 +255,9 @@ fn the_page_names_files_that_exist() {
     let crates = fs::read_dir(root().join("crates")).unwrap().map(|entry| entry.unwrap().path().join("src"));
     let sources: Vec<PathBuf> = crates.collect();
     // Every second part between backquotes is code; the picture's fence adds an even number.
-    let names = text.split('`').filter(|part| part.ends_with(".rs") || part.ends_with(".toml"));
-    let names: Vec<&str> = names.filter(|part| !part.contains(char::is_whitespace)).collect();
+    let ending = |part: &str| Path::new(part).extension().is_some_and(|ending| ending == "rs" || ending == "toml");
+    let names = text.split('`').filter(|part| ending(part) && !part.contains(char::is_whitespace));
+    let names: Vec<&str> = names.collect();
     assert!(names.len() > 15, "{names:?}");
     let exists = |name: &&str| root().join(name).is_file() || sources.iter().any(|source| source.join(name).is_file());
     let missing: Vec<&&str> = names.iter().filter(|name| !exists(name)).collect();

@@ -1,4 +1,4 @@
-//! Killers, which notice a fault: cases of `pathmark check`, or tests by their path, in any test program.
+//! Killers, which notice a fault: cases of `pathmark selftest`, or tests by their path, in any test program.
 
 use super::fault::{packages, source_files};
 use std::collections::BTreeSet;

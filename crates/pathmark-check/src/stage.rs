@@ -1,7 +1,7 @@
 //! Scenes for cases, assembled from short parts and read by the program's scene reader.
 //!
 //! ```
-//! use pathmark::check::stage::{camera, diffuse, object, scene, sphere};
+//! use pathmark_check::stage::{camera, diffuse, object, scene, sphere};
 //!
 //! let wall = object(&sphere([0.0; 3], 1.0), &diffuse(0.5), [1.0; 3]);
 //! let furnace = scene(&[camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), wall]);

@@ -32,6 +32,7 @@ static REFUSED: AtomicBool = AtomicBool::new(false);
 /// `RUST_BACKTRACE` is set.
 ///
 /// ```
+/// # use pathmark_cli as pathmark;
 /// #[global_allocator]
 /// static ALLOCATOR: pathmark::Allocator = pathmark::Allocator;
 /// ```

@@ -233,15 +233,15 @@ mod tests {
     use clap::Parser;
 
     #[derive(Parser)]
-    struct Replay {
+    struct Path {
         #[command(flatten)]
         arguments: Arguments,
     }
 
     /// The arguments that the program reads from a command.
     fn read(command: &str) -> Arguments {
-        let (_, words) = command.split_once(' ').expect("the program's name");
-        Replay::try_parse_from(words.split(' ')).expect("a command that the program takes").arguments
+        let (_, words) = command.split_once(" inspect ").expect("the program's name and the verb");
+        Path::try_parse_from(words.split(' ')).expect("a command that the program takes").arguments
     }
 
     /// Changes each axis that changes the image.
