@@ -3,7 +3,7 @@
 
 use crate::simd::{Apart, Float, Words};
 use pathmark_tracer::math::Bits;
-use pathmark_tracer::sampling::{Purpose, SampleKey, hash, independent, mix, sobol, sobol_burley};
+use pathmark_tracer::sampling::{Purpose, SampleKey, hash, independent, mix, sobol};
 
 /// A sampler that is available in lanes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,8 +14,6 @@ pub enum InLanes {
     Hash,
     /// `sobol`.
     Sobol,
-    /// `sobol-burley`.
-    SobolBurley,
 }
 
 /// The values that all random numbers of a sample share, computed once per sample.
@@ -36,7 +34,6 @@ impl InLanes {
             "independent" => Some(Self::Independent),
             "hash" => Some(Self::Hash),
             "sobol" => Some(Self::Sobol),
-            "sobol-burley" => Some(Self::SobolBurley),
             _ => None,
         }
     }
@@ -44,7 +41,7 @@ impl InLanes {
     /// Whether a number depends on more of its sample than [`PathWords::path`] contains.
     #[inline(always)]
     pub fn is_spread(self) -> bool {
-        matches!(self, Self::Sobol | Self::SobolBurley)
+        self == Self::Sobol
     }
 
     /// The positions of a sample in the order that the film and the first vertex share; 0 if the sampler has none.
@@ -52,9 +49,7 @@ impl InLanes {
     pub fn joined(self, key: SampleKey) -> [u64; 2] {
         match self {
             Self::Independent | Self::Hash => [0; 2],
-            Self::Sobol | Self::SobolBurley => {
-                sobol::joined(sobol::pixel(key.seed, u64::from(key.pixel)), key.sample).map(u64::from)
-            }
+            Self::Sobol => sobol::joined(sobol::pixel(key.seed, u64::from(key.pixel)), key.sample).map(u64::from),
         }
     }
 
@@ -63,9 +58,9 @@ impl InLanes {
     pub fn words<B: Bits>(self, seed: u64, pixel: B, sample: B, joined: [B; 2]) -> PathWords<B> {
         let path = match self {
             Self::Independent | Self::Hash => independent::path(seed, pixel.up::<32>() | sample),
-            Self::Sobol | Self::SobolBurley => sobol::pixel(seed, pixel),
+            Self::Sobol => sobol::pixel(seed, pixel),
         };
-        let sample = if self == Self::SobolBurley { sobol_burley::digits(sample) } else { sample };
+        let sample = if self == Self::Sobol { sobol::digits(sample) } else { sample };
         PathWords { path, sample, joined }
     }
 
@@ -83,15 +78,14 @@ impl InLanes {
         let [first, second] = match self {
             Self::Independent => independent::pcg32(key, dimension),
             Self::Hash => hash::both(key),
-            Self::Sobol => return V::apart(Scrambled::<V, false> { key, words, bounce, branch, purpose }),
-            Self::SobolBurley => return V::apart(Scrambled::<V, true> { key, words, bounce, branch, purpose }),
+            Self::Sobol => return V::apart(Scrambled { key, words, bounce, branch, purpose }),
         };
         [V::unit(first), V::unit(second)]
     }
 }
 
-/// A pair of `sobol` or `sobol-burley`. It takes so many operations that a function call costs little beside them.
-struct Scrambled<'a, V: Float, const BURLEY: bool> {
+/// A pair of `sobol`. It takes so many operations that a function call costs little beside them.
+struct Scrambled<'a, V: Float> {
     /// A mix of everything but the sample's index.
     key: V::Bits,
     words: &'a PathWords<V::Bits>,
@@ -100,15 +94,14 @@ struct Scrambled<'a, V: Float, const BURLEY: bool> {
     purpose: Purpose,
 }
 
-impl<V: Float, const BURLEY: bool> Scrambled<'_, V, BURLEY> {
+impl<V: Float> Scrambled<'_, V> {
     #[inline(always)]
     fn own_place(&self) -> V::Bits {
-        let sample = self.words.sample;
-        if BURLEY { sobol_burley::own_place(self.key, sample) } else { sobol::own_place(self.key, sample) }
+        sobol::own_place(self.key, self.words.sample)
     }
 }
 
-impl<V: Float, const BURLEY: bool> Apart for Scrambled<'_, V, BURLEY> {
+impl<V: Float> Apart for Scrambled<'_, V> {
     type Output = [V; 2];
 
     #[inline(always)]
@@ -123,7 +116,7 @@ impl<V: Float, const BURLEY: bool> Apart for Scrambled<'_, V, BURLEY> {
             }
             _ => self.own_place(),
         };
-        let [first, second] = if BURLEY { sobol_burley::fractions(*key, place) } else { sobol::fractions(*key, place) };
+        let [first, second] = sobol::fractions(*key, place);
         [V::unit(first), V::unit(second)]
     }
 }

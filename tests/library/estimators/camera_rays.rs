@@ -11,7 +11,7 @@ use pathmark::simd::levels;
 use std::sync::Arc;
 
 const LEVEL: f64 = 1e-3;
-const SAMPLERS: [&str; 4] = ["independent", "hash", "sobol", "sobol-burley"];
+const SAMPLERS: [&str; 3] = ["independent", "hash", "sobol"];
 
 /// The sky is white, and the ground is black: half of the rays of the only pixel see light.
 const HORIZON: &str = r#"

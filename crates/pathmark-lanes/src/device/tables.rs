@@ -15,7 +15,6 @@ pub(super) const SAMPLERS: &[(&str, &str)] = &[
     ("hash", "SAMPLER_HASH"),
     ("independent", "SAMPLER_INDEPENDENT"),
     ("sobol", "SAMPLER_SOBOL"),
-    ("sobol-burley", "SAMPLER_BURLEY"),
     ("stratified", "SAMPLER_STRATIFIED"),
 ];
 

@@ -29,4 +29,4 @@ pub use spec::Spec;
 
 /// Version of the arithmetic. It changes when the same settings produce different bits; films of older versions are
 /// then no longer used.
-pub const REVISION: u32 = 3;
+pub const REVISION: u32 = 4;

@@ -5,6 +5,7 @@
 //! chooses.
 
 #[doc(hidden)]
+mod burley;
 pub mod hash;
 #[doc(hidden)]
 pub mod independent;
@@ -15,7 +16,6 @@ mod per_thread;
 #[doc(hidden)]
 pub mod sobol;
 #[doc(hidden)]
-pub mod sobol_burley;
 mod stratified;
 mod warp;
 
@@ -26,7 +26,6 @@ pub use libc_rand::LibcRand;
 pub use locked::Locked;
 pub use per_thread::PerThread;
 pub use sobol::{ORDERS, SUBPIXEL, Sobol, each_third};
-pub use sobol_burley::SobolBurley;
 pub use stratified::Stratified;
 pub use warp::{UNIFORM_SPHERE_DENSITY, concentric_disk, cosine_hemisphere, tent, uniform_sphere};
 
@@ -160,8 +159,7 @@ samplers! {
     }
     spread {
         "stratified", "4x4 jittered strata for each 16 samples, in a separate order for each use", "0d0de625fc782297" => Stratified;
-        "sobol", "Owen-scrambled Sobol pairs, with separate scrambling and order for each use", "6c0274abd78ac137" => Sobol;
-        "sobol-burley", "sobol with 32-bit scrambling (Burley 2020): equally even, and cheaper in lanes", "9ad64a7ff83a2dc3" => SobolBurley;
+        "sobol", "Owen-scrambled Sobol pairs (Burley 2020), with separate scrambling and order for each use", "9ad64a7ff83a2dc3" => Sobol;
     }
     stateful {
         "libc-rand", "the C library's one rand() behind its lock (report A); not deterministic" => LibcRand::new;

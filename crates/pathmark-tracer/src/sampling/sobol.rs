@@ -23,8 +23,10 @@
 //! polynomial in Niederreiter's construction. Of 4^m samples, those of a subpixel are then a (1, m-1, 4)-net in base 4,
 //! in the four numbers together.
 
+use super::burley;
+pub use super::burley::digits;
 use super::independent::mix;
-use super::owen::{scramble, shuffle};
+use super::owen::shuffle;
 use super::{Address, Purpose, Sampler};
 use crate::math::{Bits, unit};
 
@@ -79,7 +81,7 @@ fn pascal_of_elements<B: Bits>(elements: B) -> B {
 /// The digits of Sobol's second dimension, the first in the lowest bit: the index times Pascal's triangle of bits. (The first dimension
 /// is the index itself.)
 #[inline(always)]
-pub(super) fn pascal<B: Bits>(index: B) -> B {
+fn pascal<B: Bits>(index: B) -> B {
     pascal_of_elements(index ^ index.down::<1>() & B::splat(u64::from(LOWER)))
 }
 
@@ -149,44 +151,31 @@ pub fn joined(pixel: u64, sample: u32) -> [u32; 2] {
     [place, pascal_to_omega(place)]
 }
 
-/// A sample's position in the use's own order.
+/// The position in the use's own order of a sample with these digits ([`digits`]).
 #[inline(always)]
-pub fn own_place<B: Bits>(key: B, sample: B) -> B {
-    shuffle(sample, [mix(key), mix(key ^ B::splat(1))])
+pub fn own_place<B: Bits>(key: B, digits: B) -> B {
+    burley::shuffle(digits, mix(key ^ B::splat(1)))
 }
 
 /// The two numbers at a position of the sequence, scrambled for a use, as 64-bit fractions.
 #[inline(always)]
 pub fn fractions<B: Bits>(key: B, place: B) -> [B; 2] {
-    let first = [mix(key ^ B::splat(2)), mix(key ^ B::splat(3))];
-    let second = [mix(key ^ B::splat(4)), mix(key ^ B::splat(5))];
-    [scramble(place, first).reversed(), scramble(pascal(place), second).reversed()]
-}
-
-/// The pair at an address. From the address's key, `own_place` computes the position in the use's own order, and
-/// `fractions` the two scrambled fractions.
-#[inline(always)]
-pub(super) fn pair_by(
-    at: Address,
-    own_place: impl Fn(u64, u64) -> u64,
-    fractions: impl Fn(u64, u64) -> [u64; 2],
-) -> [f64; 2] {
-    let dimension = u64::from(at.bounce) << 32 | u64::from(at.branch) << 16 | at.purpose as u64;
-    // Constant along a path, so the compiler moves it out of the loop over bounces.
-    let pixel = pixel(at.key.seed, u64::from(at.key.pixel));
-    let key = mix(pixel ^ dimension);
-    let place = match (at.bounce, at.branch, at.purpose) {
-        (0, _, Purpose::Film) => u64::from(joined(pixel, at.key.sample)[0]),
-        (1, 0, Purpose::Bsdf | Purpose::Light) => u64::from(joined(pixel, at.key.sample)[1]),
-        _ => own_place(key, u64::from(at.key.sample)),
-    };
-    fractions(key, place).map(unit)
+    [burley::scramble(place, key).reversed(), burley::scramble(pascal(place), key.down::<32>()).reversed()]
 }
 
 impl Sampler for Sobol {
     #[inline(always)]
     fn pair(&self, at: Address) -> [f64; 2] {
-        pair_by(at, own_place, fractions)
+        let dimension = u64::from(at.bounce) << 32 | u64::from(at.branch) << 16 | at.purpose as u64;
+        // Constant along a path, so the compiler moves it out of the loop over bounces.
+        let pixel = pixel(at.key.seed, u64::from(at.key.pixel));
+        let key = mix(pixel ^ dimension);
+        let place = match (at.bounce, at.branch, at.purpose) {
+            (0, _, Purpose::Film) => u64::from(joined(pixel, at.key.sample)[0]),
+            (1, 0, Purpose::Bsdf | Purpose::Light) => u64::from(joined(pixel, at.key.sample)[1]),
+            _ => own_place(key, digits(u64::from(at.key.sample))),
+        };
+        fractions(key, place).map(unit)
     }
 }
 

@@ -58,7 +58,7 @@ FN u32 leading_place(u32 sample, u64 a, u64 b, GLOBAL const u32 *orders) {
     return fours | (subpixel ^ lower ^ (higher << 1));
 }
 
-// Vegdahl's hash, `sampling/sobol_burley.rs`.
+// Vegdahl's hash, `sampling/burley.rs`.
 FN u64 low_product(u64 a, u64 b) { return (a & 0xFFFFFFFFUL) * (b & 0xFFFFFFFFUL); }
 FN u64 burley(u64 digits, u64 seed) {
     digits ^= low_product(digits, 0x3D20ADEAUL);
@@ -78,7 +78,7 @@ FN sample_key key_of(GLOBAL const u32 *words, u32 pixel, u32 sample) {
     key.pixel = pixel;
     key.sample = sample;
     u32 kind = words[AT_SAMPLER];
-    if (kind == SAMPLER_SOBOL || kind == SAMPLER_BURLEY)
+    if (kind == SAMPLER_SOBOL)
         key.pixel_key = own_prefix(key.seed_key, (u64)pixel);
     else if (kind == SAMPLER_STRATIFIED)
         key.pixel_key = own_prefix(key.seed_key, ((u64)pixel << 32) | (u64)(sample / 16U));
@@ -131,17 +131,10 @@ FN word_pair words_of(GLOBAL const u32 *words, const sample_key *key, u32 bounce
     if (leads) {
         u32 common = leading_place(key->sample, mix64(~key->pixel_key), mix64(key->pixel_key ^ ~1UL), words + AT_ORDERS);
         place = (u64)(bounce == 0U ? common : pascal_to_omega(common));
-    } else if (kind == SAMPLER_SOBOL) {
-        place = shuffle64((u64)key->sample, mix64(word), mix64(word ^ 1UL));
     } else {
         place = reversed64(burley(reversed64((u64)key->sample) >> 32, mix64(word ^ 1UL)) << 32);
     }
-    if (kind == SAMPLER_SOBOL) {
-        result.first = reversed64(scramble(place, mix64(word ^ 2UL), mix64(word ^ 3UL)));
-        result.second = reversed64(scramble(pascal(place), mix64(word ^ 4UL), mix64(word ^ 5UL)));
-    } else {
-        result.first = reversed64(burley(place, word));
-        result.second = reversed64(burley(pascal(place), word >> 32));
-    }
+    result.first = reversed64(burley(place, word));
+    result.second = reversed64(burley(pascal(place), word >> 32));
     return result;
 }

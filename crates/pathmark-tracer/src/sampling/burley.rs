@@ -1,23 +1,15 @@
-//! Sobol pairs with hash-based Owen scrambling: `--sampler sobol-burley`.
+//! Owen's scrambling of 32 binary digits by four products of 32 bits.
 //!
-//! Pairs and orders are those of `sobol` ([`super::sobol`]). The scramblings use 32-bit products, as proposed by B.
-//! Burley ("Practical Hash-based Owen Scrambling", Journal of Computer Graphics Techniques 9(4), 2020). The hash is of
-//! the family of S. Laine and T. Karras ("Stratified Sampling for Stochastic Transparency", 2011) with the constants of
-//! N. Vegdahl ("Building a Better LK Hash", 2021). A pair takes 4 products of 64 bits and 12 of 32, where `sobol` takes
-//! 23 of 64 bits. Digits beyond the 32nd do not belong to the net.
+//! The method is that of B. Burley ("Practical Hash-based Owen Scrambling", Journal of Computer Graphics Techniques 9(4),
+//! 2020). The hash is of the family of S. Laine and T. Karras ("Stratified Sampling for Stochastic Transparency", 2011)
+//! with the constants of N. Vegdahl ("Building a Better LK Hash", 2021). Digits beyond the 32nd do not belong to the
+//! net.
 
-use super::independent::mix;
-use super::sobol::{pair_by, pascal};
-use super::{Address, Sampler};
 use crate::math::Bits;
-
-/// The sampler; it has no state.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct SobolBurley;
 
 /// Scrambles 32 binary digits, the first in the lowest bit. The upper half of the result is meaningless.
 #[inline(always)]
-fn scramble<B: Bits>(digits: B, seed: B) -> B {
+pub(super) fn scramble<B: Bits>(digits: B, seed: B) -> B {
     let digits = digits ^ digits.times_low(B::splat(0x3D20_ADEA));
     let digits = digits.plus(seed).times_low(seed.down::<16>() | B::splat(1));
     let digits = digits ^ digits.times_low(B::splat(0x0552_6C56));
@@ -30,27 +22,16 @@ pub fn digits<B: Bits>(sample: B) -> B {
     sample.reversed().down::<32>()
 }
 
-/// The position in the sequence of a sample with these digits, in the use's own order.
+/// Permutes the numbers 0..2^32, given by their digits: each aligned block of 2^k numbers stays together and moves to an
+/// aligned place.
 #[inline(always)]
-pub fn own_place<B: Bits>(key: B, digits: B) -> B {
-    scramble(digits, mix(key ^ B::splat(1))).up::<32>().reversed()
-}
-
-/// The two numbers at a position of the sequence, scrambled for a use, as 64-bit fractions.
-#[inline(always)]
-pub fn fractions<B: Bits>(key: B, place: B) -> [B; 2] {
-    [scramble(place, key).reversed(), scramble(pascal(place), key.down::<32>()).reversed()]
-}
-
-impl Sampler for SobolBurley {
-    #[inline(always)]
-    fn pair(&self, at: Address) -> [f64; 2] {
-        pair_by(at, |key, sample| own_place(key, digits(sample)), fractions)
-    }
+pub(super) fn shuffle<B: Bits>(digits: B, seed: B) -> B {
+    scramble(digits, seed).up::<32>().reversed()
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::independent::mix;
     use super::super::owen::flips;
     use super::*;
 
