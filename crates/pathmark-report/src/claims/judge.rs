@@ -3,7 +3,7 @@
 use super::condition::{Columns, Conditions};
 use super::definition::{Claim, Evidence as Kind, Report, Test};
 use super::measure::{Evidence, Found};
-use super::statistic::{GuardColumn, Statistic};
+use super::statistic::{Cases, GuardColumn, GuardValue, Statistic};
 use super::verdict::Verdict;
 use crate::analysis::Interval;
 use crate::cases_file::{self, CaseRow};
@@ -102,10 +102,10 @@ impl<'a> Library<'a> {
                     }
                 }
             }
-            Statistic::Case { ids } => {
+            Statistic::Case(Cases { ids }) => {
                 (self.failed_cases(ids), self.out.join(cases_file::FOLDER).join(cases_file::FILE), Vec::new())
             }
-            Statistic::Guard { guard, column } => {
+            Statistic::Guard(GuardValue { guard, column }) => {
                 (self.price(guard, *column), self.out.join(guard_prices::FOLDER).join(guard_prices::FILE), Vec::new())
             }
         };

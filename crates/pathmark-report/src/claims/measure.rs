@@ -112,7 +112,7 @@ impl Evidence {
                 let points: Vec<(f64, f64)> = points.collect();
                 Found::estimate(log_log(&points, level).map(|line| line.slope), points.len())
             }
-            Kind::RmseSlope => {
+            Kind::RmseSlope {} => {
                 let own: Vec<&Row> = rows.iter().map(|(row, _)| *row).collect();
                 let curves: Vec<_> = curves_of_seeds(&own).into_iter().map(|(curve, _)| curve).collect();
                 let law = SeedCurves::of_errors(&curves).and_then(|curves| power_law(&curves, level));
@@ -120,7 +120,7 @@ impl Evidence {
             }
             Kind::Z { column, over } => z(&rows, &self.rows(over), column, level),
             Kind::RankCorrelation { x, y, by } => rank_correlation(&rows, [x, y], by, level),
-            Kind::Checksum => checksums(&rows),
+            Kind::Checksum {} => checksums(&rows),
             Kind::Forecast { strategy, cores, column } => self.forecast(&rows, (strategy, *cores), *column, level)?,
         })
     }
