@@ -8,7 +8,6 @@ use crate::analysis::Interval;
 use crate::error::Result;
 use crate::experiment::{Chapter, read_run_file};
 use crate::guard_prices::{FILE, FOLDER, PriceRow, read_prices};
-use crate::measure::{Doubts, LeftOut};
 use crate::plot::{Axis, Dot, DotPlot, Row};
 use std::path::Path;
 
@@ -41,15 +40,10 @@ pub(super) fn section(out: &Path) -> Result<Option<Section>> {
         question: QUESTION.to_string(),
         analysis: ANALYSIS.to_string(),
         chapter: Some(Chapter::HardInputs),
-        place: 0,
-        in_short: None,
-        again: None,
-        failed: Vec::new(),
-        left_out: LeftOut::default(),
-        doubts: Doubts::default(),
         rows: rows.len(),
         run: Some(run),
         blocks,
+        ..Section::default()
     }))
 }
 

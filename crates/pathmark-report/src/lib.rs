@@ -36,8 +36,8 @@ use crate::files::Files;
 use crate::lab::Lab;
 use page::Section;
 use pathmark_harness::{
-    analysis, atomic_file, cases_file, cluster, digest, error, experiment, files, film_file, guard_prices, image_io,
-    input, kernel, lab, measure, metric, scene, shell, simulate,
+    analysis, atomic_file, cases_file, cluster, csv_file, digest, error, experiment, files, film_file, guard_prices,
+    image_io, input, kernel, lab, measure, metric, scene, shell, simulate,
 };
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

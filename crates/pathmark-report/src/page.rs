@@ -40,6 +40,7 @@ pub(super) fn is_page(path: &Path) -> bool {
 const OPEN_ROWS: usize = 12;
 
 /// A part of the page: an experiment, the guards, the benches or the claims.
+#[derive(Default)]
 pub(super) struct Section {
     /// Its anchor, the target of links.
     pub(super) name: String,
@@ -77,23 +78,8 @@ impl Section {
         let findings = || blocks.iter().filter_map(Block::as_finding);
         let in_short = in_short.and_then(|number| findings().nth(number.get() - 1)).map(ToString::to_string);
         let Results { failed, left_out, run, .. } = results;
-        let (chapter, run) = (Some(chapter), Some(run));
-        Self {
-            name,
-            title,
-            question,
-            analysis,
-            chapter,
-            place,
-            in_short,
-            again,
-            failed,
-            left_out,
-            rows,
-            doubts,
-            run,
-            blocks,
-        }
+        let words = Self { name, title, question, analysis, in_short, ..Self::default() };
+        Self { chapter: Some(chapter), place, again, failed, left_out, rows, doubts, run: Some(run), blocks, ..words }
     }
 }
 

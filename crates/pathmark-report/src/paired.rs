@@ -222,6 +222,20 @@ pub(super) fn time_ratio<'a>(
     Ok(ratios(above, below, forget, |row| row.makespan_s)?.median(stopping).and_then(Ratio::of))
 }
 
+/// How many times as long the first rows of each cell take as the second, over repetitions that the cells share.
+pub(super) fn time_ratios<'a, T>(
+    cells: impl IntoIterator<Item = (T, &'a [&'a Row], &'a [&'a Row])>,
+    forget: Forget,
+    stopping: Stopping,
+) -> Result<Vec<(T, Ratio)>> {
+    let ratio = |(thing, above, below): (T, &[&'a Row], &[&'a Row])| {
+        let (above, below) = (above.iter().copied(), below.iter().copied());
+        Ok((thing, ratios(above, below, forget, |row| row.makespan_s)?))
+    };
+    let cells = cells.into_iter().map(ratio).collect::<Result<Vec<_>>>()?;
+    Ok(estimates(cells, stopping))
+}
+
 /// A median ratio with its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Ratio {

@@ -32,6 +32,12 @@ impl Row {
     }
 }
 
+impl AsRef<Self> for Row {
+    fn as_ref(&self) -> &Self {
+        self
+    }
+}
+
 impl Deref for Row {
     type Target = Record;
     fn deref(&self) -> &Record {

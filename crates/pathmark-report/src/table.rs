@@ -2,8 +2,8 @@
 
 use super::block::Block;
 use super::words::Told;
-use crate::error::{Error, Result};
-use crate::{atomic_file, plot};
+use crate::error::Result;
+use crate::{csv_file, plot};
 use std::path::Path;
 
 /// The number of digits that the page shows.
@@ -125,15 +125,9 @@ impl Table {
 
     /// Writes it as a CSV file.
     pub(super) fn save(&self, path: &Path) -> Result<()> {
-        let mut writer = csv::Writer::from_writer(Vec::new());
         let heads: Vec<String> = self.columns.iter().flat_map(Column::heads).collect();
         let row = |row: usize| self.columns.iter().flat_map(|column| column.entries[row].written()).collect();
-        let rows = std::iter::once(heads).chain((0..self.length).map(row));
-        let written = rows.map(|row: Vec<String>| writer.write_record(row)).collect::<csv::Result<Vec<()>>>();
-        let system = |e: std::io::Error| Error::system("writing", path, e);
-        written.map_err(|e| system(e.into()))?;
-        let bytes = writer.into_inner().map_err(|e| system(e.into_error()))?;
-        atomic_file::write(path, |file| file.write_all(&bytes))
+        csv_file::write(path, std::iter::once(heads).chain((0..self.length).map(row)))
     }
 }
 

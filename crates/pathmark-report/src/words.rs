@@ -78,13 +78,24 @@ pub(super) fn hollow(told: impl IntoIterator<Item = Told>) -> &'static str {
     if has_some { " Hollow: fewer seeds or repetitions than the others, so not comparable with them." } else { "" }
 }
 
+/// The sentence of a caption about bars, and that about hollow marks.
+pub(super) fn bars<T: Into<Told>>(told: impl IntoIterator<Item = T>) -> String {
+    let told: Vec<Told> = told.into_iter().map(Into::into).collect();
+    format!("Bars: {}.{}", confidence(told.iter().filter_map(|told| told.interval)), hollow(told))
+}
+
+/// The caption of ratios in pairs.
+pub(super) fn ratio_bars<T: Into<Told>>(told: impl IntoIterator<Item = T>) -> String {
+    format!("Median of ratios within a repetition. {}", bars(told))
+}
+
 /// The values of those rows that have one.
-pub(super) fn values<'a>(rows: impl IntoIterator<Item = &'a Row>, value: impl Fn(&Row) -> Option<f64>) -> Vec<f64> {
-    rows.into_iter().filter_map(value).collect()
+pub(super) fn values(rows: impl IntoIterator<Item: AsRef<Row>>, value: impl Fn(&Row) -> Option<f64>) -> Vec<f64> {
+    rows.into_iter().filter_map(|row| value(row.as_ref())).collect()
 }
 
 /// The median of a value over rows.
-pub(super) fn typical<'a>(rows: impl IntoIterator<Item = &'a Row>, value: impl Fn(&Row) -> Option<f64>) -> Option<f64> {
+pub(super) fn typical(rows: impl IntoIterator<Item: AsRef<Row>>, value: impl Fn(&Row) -> Option<f64>) -> Option<f64> {
     median(&values(rows, value))
 }
 
@@ -104,7 +115,7 @@ pub(super) fn told(ratio: &Ratio, digits: usize) -> String {
 }
 
 /// The confidence of some intervals of medians, in words for a caption.
-pub(super) fn confidence(intervals: impl IntoIterator<Item = Interval>) -> String {
+fn confidence(intervals: impl IntoIterator<Item = Interval>) -> String {
     let mut levels: Vec<f64> = intervals.into_iter().map(|interval| at_least_percent(interval.level)).collect();
     levels.sort_by(f64::total_cmp);
     let levels = match levels.as_slice() {

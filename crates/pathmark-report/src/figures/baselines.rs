@@ -36,14 +36,10 @@ fn told_kind((schedule, effects): Kind<'_>) -> String {
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let kinds: BTreeMap<Kind<'_>, Vec<&Row>> = results.by(|row| (&row.schedule, row.effects.as_str()));
     let (alone, several): (Vec<_>, Vec<_>) = kinds.iter().partition(|((schedule, _), _)| schedule.key.threads == 1);
-    let mut cells = Vec::new();
-    for (own, rows) in several {
-        for (baseline, base_rows) in &alone {
-            let (base, own_rows) = (base_rows.iter().copied(), rows.iter().copied());
-            cells.push(((*own, **baseline), ratios(base, own_rows, any_schedule, |row| row.makespan_s)?));
-        }
-    }
-    let all = estimates(cells, results.stopping()).into_iter();
+    let cells = several.into_iter().flat_map(|(own, rows)| {
+        alone.iter().map(move |(baseline, base)| ((*own, **baseline), base.as_slice(), rows.as_slice()))
+    });
+    let all = time_ratios(cells, any_schedule, results.stopping())?.into_iter();
     let mut all: Vec<Against<'_>> = all.map(|((own, baseline), speedup)| Against { own, baseline, speedup }).collect();
     all.sort_by(|a, b| a.speedup.falling(&b.speedup));
     let dots = all.iter().map(|a| PlotRow::new(a.name(), vec![Some(Told::from(a.speedup).dot())])).collect();
@@ -51,9 +47,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         DotPlot::new("One schedule against several baselines", Axis::linear("speedup").including([1.0, 2.1]), dots);
     plot.guides = all.iter().map(Against::workers).collect::<BTreeSet<_>>().into_iter().map(guide).collect();
     plot.subtitle = results.workload();
-    let intervals = all.iter().map(|against| against.speedup.interval);
-    let hollow = hollow(all.iter().map(|against| Told::from(against.speedup)));
-    plot.caption = format!("Median of ratios within a repetition. Bars: {}.{hollow}", confidence(intervals));
+    plot.caption = ratio_bars(all.iter().map(|against| against.speedup));
     let mut blocks = vec![Block::figure("baselines", plot)];
     blocks.extend(finding(&all));
     blocks.push(table(&all));

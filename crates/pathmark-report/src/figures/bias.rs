@@ -157,7 +157,7 @@ fn costs(results: &Results, axis: Varied, usual: &str) -> Vec<Cost> {
         let rows: Vec<&Row> = rows.collect();
         let light = Repeats::of_images(rows.iter().copied(), axis.forget(), |row| row.mean_radiance).over(&plain);
         let mean = |value: fn(&Row) -> Option<f64>| {
-            let all = values(rows.iter().copied(), value);
+            let all = values(&rows, value);
             (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
         };
         Some(Cost {

@@ -26,7 +26,7 @@ struct Loss {
 }
 
 fn radiance(rows: &[&Row]) -> Option<f64> {
-    Moments::of(&values(rows.iter().copied(), |row| row.mean_radiance)).mean()
+    Moments::of(&values(rows, |row| row.mean_radiance)).mean()
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
@@ -45,7 +45,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     };
     let known = |spp: u32| prototype.as_ref()?.bias.iter().find(|(of, _)| *of == spp).map(|(_, bias)| *bias);
     let losses = of("subpixel").filter(|((_, spp), _)| *spp < largest).filter_map(|((_, spp), rows)| {
-        let losses = values(rows.iter().copied(), |row| Some(100.0 * (row.mean_radiance? / limit - 1.0)));
+        let losses = values(rows, |row| Some(100.0 * (row.mean_radiance? / limit - 1.0)));
         Some(Loss { spp: *spp, seeds: losses.len(), lost: Told::mean(&losses)?, prototype: known(*spp) })
     });
     let losses: Vec<Loss> = losses.collect();

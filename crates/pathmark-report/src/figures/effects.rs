@@ -4,19 +4,13 @@
 use super::prelude::*;
 use crate::scene::PROFILES;
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Options {
     /// The profile that contains every effect.
-    largest: String,
+    largest: Option<String>,
     /// The effects to price.
     price: Vec<Price>,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { largest: "all".to_string(), price: Vec::new() }
-    }
 }
 
 /// An effect, and the rows in which it is absent, compiled in but unused, and used.
@@ -81,7 +75,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let times: BTreeMap<Kind, Times> =
         results.by(Kind::of).into_iter().map(|(kind, r)| (kind, Times::of(&r))).collect();
     let mut blocks = prices(results, &price, &times);
-    blocks.extend(scenes(results, &largest));
+    blocks.extend(scenes(results, largest.as_deref().unwrap_or("all")));
     if blocks.is_empty() {
         let text = "Nothing was run with and without an effect, so there is no price of one.";
         blocks.push(Block::notice(text));
@@ -121,9 +115,8 @@ fn prices(results: &Results, prices: &[Price], times: &BTreeMap<Kind, Times>) ->
     plot.guides = vec![(1.0, "absent".to_string())];
     plot.subtitle = machine(results);
     plot.caption = format!(
-        "Median of ratios within a repetition. Bars: {}.{} What uses an effect is another image, with other paths.",
-        confidence(found.iter().flat_map(|found| [found.unused.1.interval, found.used.1.interval])),
-        hollow(found.iter().flat_map(|found| [found.unused.1, found.used.1]).map(Told::from)),
+        "{} What uses an effect is another image, with other paths.",
+        ratio_bars(found.iter().flat_map(|found| [found.unused.1, found.used.1])),
     );
     let place = |kind: &Kind| format!("{}, {}", kind.scene, kind.profile);
     let table = Block::table("effects-table", "The price of an effect: absent, compiled in but unused, used", &found)
@@ -206,11 +199,8 @@ fn scenes(results: &Results, largest: &str) -> Vec<Block> {
     let mut plot = DotPlot::new("What a fitting profile gains", axis, rows.collect());
     plot.guides = vec![(1.0, "no gain".to_string())];
     plot.subtitle = machine(results);
-    plot.caption = format!(
-        "Median of ratios within a repetition, same image. Bars: {}.{}",
-        confidence(fits.iter().map(|fit| fit.ratio.interval)),
-        hollow(fits.iter().map(|fit| Told::from(fit.ratio))),
-    );
+    let bars = bars(fits.iter().map(|fit| fit.ratio));
+    plot.caption = format!("Median of ratios within a repetition, same image. {bars}");
     let slower: Vec<&str> = fits.iter().filter(|fit| fit.ratio.interval.high < 1.0).map(|fit| fit.scene).collect();
     let faster = fits.iter().filter(|fit| fit.ratio.interval.low > 1.0).count();
     let never = if slower.is_empty() {

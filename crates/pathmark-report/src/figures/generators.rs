@@ -40,12 +40,6 @@ struct Line<'a> {
     seconds: Told,
 }
 
-impl Line<'_> {
-    fn typical(&self, value: impl Fn(&Row) -> Option<f64>) -> Option<f64> {
-        typical(self.rows.iter().copied(), value)
-    }
-}
-
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Options { compare } = options(results, "generators")?;
     let crews: BTreeSet<(usize, String)> =
@@ -82,18 +76,18 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let plot = DotPlot::new("Time by random number generator", Axis::log("milliseconds"), dots);
     let mut plot = plot.grouped(crews.iter().map(|(_, crew)| crew));
     plot.subtitle = results.workload();
-    let intervals = lines.iter().filter_map(|line| line.seconds.interval);
-    let hollow = hollow(lines.iter().map(|line| line.seconds));
-    plot.caption = format!("Median. Bars: {}.{hollow}", confidence(intervals));
+    plot.caption = format!("Median. {}", bars(lines.iter().map(|line| line.seconds)));
     let finding = compare.map_or(Ok(None), |compare| finding(results, &compare))?;
     let table = Block::table("generators-table", "Generators: medians over repetitions", &lines)
         .column("generator", |line| line.sampler.to_string())
         .column("samples per pixel", |line| line.spp.to_string())
         .column("threads", |line| line.crew.clone())
         .told("median seconds", Decimals(4), |line| line.seconds)
-        .number("switches per second", Decimals(0), |line| line.typical(switches_per_second))
-        .number("CPU / wall", Decimals(2), |line| line.typical(|row| Some(row.cpu_s()? / row.makespan_s?)))
-        .number("system share of CPU", Decimals(2), |line| line.typical(|row| Some(row.cpu_system_s? / row.cpu_s()?)))
+        .number("switches per second", Decimals(0), |line| typical(&line.rows, switches_per_second))
+        .number("CPU / wall", Decimals(2), |line| typical(&line.rows, |row| Some(row.cpu_s()? / row.makespan_s?)))
+        .number("system share of CPU", Decimals(2), |line| {
+            typical(&line.rows, |row| Some(row.cpu_system_s? / row.cpu_s()?))
+        })
         .end();
     Ok([Block::figure("generators", plot)].into_iter().chain(finding).chain([table]).collect())
 }

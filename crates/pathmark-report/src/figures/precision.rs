@@ -51,7 +51,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     plot.caption =
         "Mean over seeds, both precisions with the same random numbers to fewer digits. Bars: 95 %.".to_string();
     let rmse = |rows: &[&Row]| {
-        let mse = values(rows.iter().copied(), |row| row.mse);
+        let mse = values(rows, |row| row.mse);
         (mse.iter().sum::<f64>() / mse.len() as f64).sqrt()
     };
     let sum = |rows: &[&Row], count: fn(&Row) -> Option<u64>| {

@@ -10,7 +10,7 @@ pub(super) use crate::measure::{ImageKey, ScheduleKey};
 pub(super) use crate::naming::joined;
 pub(super) use crate::paired::{
     Forget, Partners, Ratio, Repeats, along, any_schedule, estimates, in_common, medians, ratios, time_ratio,
-    with_intervals,
+    time_ratios, with_intervals,
 };
 pub(super) use crate::plot::style::Look;
 pub(super) use crate::plot::{
@@ -21,7 +21,7 @@ pub(super) use crate::rows::{Row, gathered, group};
 pub(super) use crate::schedule::Schedule;
 pub(super) use crate::table::Digits::{Decimals, Significant};
 pub(super) use crate::words::{
-    LEVEL, Told, confidence, counted, hollow, in_table_order, number, told, typical, values, with_level,
+    LEVEL, Told, bars, counted, in_table_order, number, ratio_bars, told, typical, values, with_level,
 };
 pub(super) use serde::Deserialize;
 pub(super) use std::collections::{BTreeMap, BTreeSet};

@@ -3,21 +3,16 @@
 use super::prelude::*;
 use crate::contenders::{Check, Contender, contenders};
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Options {
     /// The RMSEs to price, in linear radiance.
-    goals: Vec<Positive>,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { goals: [0.1, 0.05, 0.02, 0.01].map(Positive).to_vec() }
-    }
+    goals: Option<Vec<Positive>>,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { goals } = options(results, "price-list")?;
+    let goals = options::<Options>(results, "price-list")?.goals;
+    let goals = goals.unwrap_or_else(|| [0.1, 0.05, 0.02, 0.01].map(Positive).to_vec());
     let scenes = contenders(results)?;
     let all: Vec<&Contender> = scenes.values().flatten().collect();
     if all.is_empty() {

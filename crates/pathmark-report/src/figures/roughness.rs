@@ -5,17 +5,11 @@
 use super::prelude::*;
 use crate::reference_image::reference_image;
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct Options {
     /// The ending of the names of scenes whose directions follow the facets.
-    by_facets: String,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { by_facets: "-vndf".to_string() }
-    }
+    by_facets: Option<String>,
 }
 
 /// A scene sampled both ways, and the ratios of facets over cosine.
@@ -28,7 +22,7 @@ struct Pair<'a> {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { by_facets } = options(results, "roughness")?;
+    let by_facets = options::<Options>(results, "roughness")?.by_facets.unwrap_or_else(|| "-vndf".to_string());
     let rows = results.by(|row| row.scene.as_str());
     let base = |scene: &'_ str| scene.strip_suffix(by_facets.as_str()).unwrap_or(scene).len();
     let scenes: BTreeSet<(usize, &str)> = rows.keys().map(|scene| (base(scene), &scene[..base(scene)])).collect();
@@ -75,8 +69,8 @@ fn plot(results: &Results, compared: &[(&str, Told, Told)]) -> DotPlot {
     let mut plot = plot.grouped(["variance of the image", "time"]);
     plot.guides = vec![(1.0, "the same".to_string())];
     plot.subtitle = results.machine_line();
-    let intervals = compared.iter().flat_map(|(_, variance, time)| [variance.interval, time.interval]).flatten();
-    plot.caption = format!("Median of ratios of runs with the same seed. Bars: {}.", confidence(intervals));
+    let bars = bars(compared.iter().flat_map(|(_, variance, time)| [*variance, *time]));
+    plot.caption = format!("Median of ratios of runs with the same seed. {bars}");
     plot
 }
 
@@ -103,9 +97,8 @@ fn table(pairs: &[Pair<'_>]) -> Block {
         [(pair.scene, cosine, pair.cosine), (pair.scene, "facets", pair.facets)]
     });
     let lines = ways.filter_map(|(scene, directions, rows)| {
-        let typical = |value: &dyn Fn(&Row) -> Option<f64>| typical(rows.iter().copied(), value);
-        let time = typical(&|row| Some(row.makespan_s? / row.paths? as f64 * 1e9))?;
-        Some((scene, directions, rows.len(), typical(&variance), time))
+        let time = typical(rows, |row| Some(row.makespan_s? / row.paths? as f64 * 1e9))?;
+        Some((scene, directions, rows.len(), typical(rows, variance), time))
     });
     // Monte Carlo efficiency: 1/(variance x time), with the time of a sample in microseconds.
     let efficiency = |variance: Option<f64>, time: f64| variance.map(|variance| 1.0 / (variance * time * 1e-3));

@@ -6,19 +6,13 @@ use crate::analysis::mean::t_interval;
 use crate::analysis::mse::over_seeds;
 use crate::analysis::rank::spearman;
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Options {
     /// Error at which prices are compared, relative to the mean radiance.
-    goal: Positive,
+    goal: Option<Positive>,
     /// The same box with three pairs of balls.
     control: Option<Control>,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { goal: Positive(0.01), control: None }
-    }
 }
 
 /// Scenes that differ only in the balls of one box.
@@ -71,7 +65,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut blocks = vec![Block::figure("scene-accuracy", chart(results, &scenes))];
     blocks.extend(claim(&scenes, control.as_ref()));
     blocks.extend(control.and_then(|control| controlled(&scenes, &control)));
-    blocks.push(table(&scenes, goal.0));
+    blocks.push(table(&scenes, goal.map_or(0.01, |goal| goal.0)));
     Ok(blocks)
 }
 
@@ -95,8 +89,8 @@ fn accuracies(results: &Results) -> Result<Vec<Accuracy>> {
             radiance,
             by_seed: Repeats::of_images(rows.iter().copied(), without_scene, |row| Some(mse(row)?.sqrt())),
             error,
-            rays: typical(rows.iter().copied(), |row| Some(row.rays? as f64 / row.paths? as f64))?,
-            sample_s: typical(rows.iter().copied(), |row| Some(row.cpu_s()? / row.paths? as f64))?,
+            rays: typical(&rows, |row| Some(row.rays? as f64 / row.paths? as f64))?,
+            sample_s: typical(&rows, |row| Some(row.cpu_s()? / row.paths? as f64))?,
             pixels: f64::from(first.width) * f64::from(first.height),
             image,
         };

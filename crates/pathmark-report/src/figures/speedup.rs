@@ -7,6 +7,7 @@ use crate::analysis::superlinear::{Evidence, cause};
 use crate::measure::Doubts;
 use crate::schedule::is_of_ranks;
 use crate::serial::Serial;
+use crate::words::hollow;
 
 /// A chart with more lines than this is unreadable, so strategies become named rows instead.
 const MOST_LINES: usize = 8;
@@ -129,13 +130,9 @@ impl Speedups<'_> {
         }
     }
 
-    /// The confidence of the drawn intervals.
-    fn confidence(&self) -> String {
-        confidence(self.all.iter().map(|(_, speedup)| speedup.interval))
-    }
-
-    fn hollow(&self) -> &'static str {
-        hollow(self.all.iter().map(|(_, speedup)| Told::from(*speedup)))
+    /// The sentences of a caption about bars and hollow marks.
+    fn bars(&self) -> String {
+        bars(self.all.iter().map(|(_, speedup)| *speedup))
     }
 
     fn is_usual(&self, schedule: &Schedule) -> bool {
@@ -181,7 +178,7 @@ impl Speedups<'_> {
         let mut plot = DotPlot::new(title, Axis::linear(axis).including([0.9]), rows).grouped(names);
         plot.guides = vec![(1.0, guide.to_string())];
         plot.subtitle = self.results.workload();
-        plot.caption = format!("Median of ratios within a repetition. Bars: {}.{}", self.confidence(), self.hollow());
+        plot.caption = ratio_bars(self.all.iter().map(|(_, speedup)| *speedup));
         plot
     }
 
@@ -213,8 +210,9 @@ impl Speedups<'_> {
         let y = Axis::linear("speedup against serial").including([0.0, processors.max(1.0) * 1.25]);
         let has_level = self.all.iter().any(|(schedule, _)| self.has_a_thread_per_job(schedule));
         let level = if has_level { " Level: a thread for each job, whatever is asked for." } else { "" };
-        let caption =
-            &format!("Median of ratios within a repetition. Bars: {}.{level}{}", self.confidence(), self.hollow());
+        let (bars, hollow) = (self.bars(), hollow(self.all.iter().map(|(_, speedup)| Told::from(*speedup))));
+        let bars = bars.trim_end_matches(hollow);
+        let caption = &format!("Median of ratios within a repetition. {bars}{level}{hollow}");
         let mut chart = self.chart("Speedup against threads", y, self.series(&|speedup, _| speedup), caption);
         let ticks: BTreeSet<usize> =
             chart.series.iter().flat_map(|series| &series.points).map(|point| point.x as usize).collect();
@@ -248,8 +246,7 @@ impl Speedups<'_> {
 
     fn efficiency_chart(&self, per_processor: &dyn Fn(f64, usize) -> f64) -> LineChart {
         let y = Axis::linear("speedup per processor in use").including([0.5, 1.05]);
-        let (bars, hollow) = (self.confidence(), self.hollow());
-        let caption = &format!("Processors in use: the smaller of threads and processors. Bars: {bars}.{hollow}");
+        let caption = &format!("Processors in use: the smaller of threads and processors. {}", self.bars());
         let mut chart = self.chart("Efficiency against threads", y, self.series(per_processor), caption);
         chart.overlays = vec![Overlay::guide("ideal: 1", Curve::Line { intercept: 1.0, slope: 0.0 })];
         chart
