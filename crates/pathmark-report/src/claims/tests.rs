@@ -1,6 +1,6 @@
 use super::condition::{Columns, columns};
 use super::definition::{Evidence, Test};
-use super::measure::Found;
+use super::measure::Measurement;
 use super::statistic::{Kind, Statistic};
 use super::*;
 use crate::error::Error;
@@ -18,7 +18,7 @@ fn claim(evidence: &str) -> String {
 }
 
 /// The answer of these rows to a claim about `an-experiment`: the verdict, the reason for it, and the measured value.
-fn answer(rows: &[Record], evidence: &str) -> (Verdict, String, Option<Found>) {
+fn answer(rows: &[Record], evidence: &str) -> (Verdict, String, Option<Measurement>) {
     let out = folder_of(&[], "", rows.to_vec());
     let text = claim(&format!("experiment = \"an-experiment\"\nlevel = 0.95\n{evidence}"));
     let reports = [Report::from_text("X.toml", &text).unwrap()];

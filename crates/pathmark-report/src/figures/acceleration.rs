@@ -126,7 +126,7 @@ fn against_spp(results: &Results, samples: &Places<'_>, gains: &[(usize, &str, G
     if gains.iter().all(|(.., gains)| gains.is_empty()) {
         return Vec::new();
     }
-    let point = |(spp, gain): &(u64, Ratio)| Told::from(*gain).above(*spp as f64);
+    let point = |(spp, gain): &(u64, Ratio)| Estimated::from(*gain).above(*spp as f64);
     let series = gains
         .iter()
         .map(|(place, name, gains)| Series::new(*name, Look::nth(*place), gains.iter().map(point).collect()));

@@ -42,7 +42,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let all = time_ratios(cells, any_schedule, results.stopping())?.into_iter();
     let mut all: Vec<Against<'_>> = all.map(|((own, baseline), speedup)| Against { own, baseline, speedup }).collect();
     all.sort_by(|a, b| a.speedup.falling(&b.speedup));
-    let dots = all.iter().map(|a| PlotRow::new(a.name(), vec![Some(Told::from(a.speedup).dot())])).collect();
+    let dots = all.iter().map(|a| DotRow::new(a.name(), vec![Some(Estimated::from(a.speedup).dot())])).collect();
     let mut plot =
         DotPlot::new("One schedule against several baselines", Axis::linear("speedup").including([1.0, 2.1]), dots);
     plot.guides = all.iter().map(Against::workers).collect::<BTreeSet<_>>().into_iter().map(guide).collect();
@@ -76,13 +76,14 @@ fn finding(all: &[Against<'_>]) -> Option<Block> {
 }
 
 fn table(all: &[Against<'_>]) -> Block {
-    let fraction =
-        |against: &&Against<'_>| serial_fraction_within(&against.speedup.estimate(), against.workers()).map(Told::from);
+    let fraction = |against: &&Against<'_>| {
+        serial_fraction_within(&against.speedup.estimate(), against.workers()).map(Estimated::from)
+    };
     Block::table("baselines", "Speedup and Karp-Flatt fraction by baseline", all)
         .column("schedule", |against| told_kind(against.own))
         .column("baseline", |against| told_kind(against.baseline))
-        .told("speedup", Decimals(3), |against| Told::from(against.speedup))
-        .told("e", Decimals(3), fraction)
+        .estimated("speedup", Decimals(3), |against| Estimated::from(against.speedup))
+        .estimated("e", Decimals(3), fraction)
         .column("remark", |against| if against.is_superlinear() { "superlinear".into() } else { String::new() })
         .end()
 }

@@ -8,8 +8,8 @@ struct Line<'a> {
     image: String,
     schedule: &'a Schedule,
     rows: Vec<&'a Row>,
-    by_wall: Told,
-    by_clock: Option<Told>,
+    by_wall: Estimated,
+    by_clock: Option<Estimated>,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
@@ -17,7 +17,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let lines: Vec<_> = results.by(|row| (results.series_name(row), row.spp, &row.schedule)).into_iter().collect();
     let speedups = |value: fn(&Row) -> Option<f64>| {
         let own = lines.iter().enumerate().map(|(index, (_, rows))| (index, serial.gains(rows, value)));
-        medians(own, results.stopping()).into_iter().collect::<BTreeMap<usize, Told>>()
+        medians(own, results.stopping()).into_iter().collect::<BTreeMap<usize, Estimated>>()
     };
     let (by_wall, by_clock) = (speedups(|row| row.makespan_s), speedups(|row| row.cpu_s()));
     let lines = lines.into_iter().enumerate().filter_map(|(index, ((image, spp, schedule), rows))| {

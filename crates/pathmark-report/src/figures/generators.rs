@@ -37,7 +37,7 @@ struct Line<'a> {
     spp: u32,
     crew: String,
     rows: Vec<&'a Row>,
-    seconds: Told,
+    seconds: Estimated,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
@@ -64,10 +64,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             ((label.clone(), sampler, crew, rows), seconds)
         })
     });
-    let (mut dots, mut lines): (Vec<PlotRow>, _) = (Vec::new(), Vec::new());
+    let (mut dots, mut lines): (Vec<DotRow>, _) = (Vec::new(), Vec::new());
     for ((label, sampler, crew, rows), seconds) in medians(cells, results.stopping()) {
         if dots.last().is_none_or(|row| row.name != label) {
-            dots.push(PlotRow::new(label, vec![None; crews.len()]));
+            dots.push(DotRow::new(label, vec![None; crews.len()]));
         }
         let places = dots.iter_mut().next_back().into_iter().flat_map(|row| row.dots.iter_mut().zip(&crews));
         places.filter(|(_, (_, name))| *name == crew).for_each(|(dot, _)| *dot = Some(seconds.times(1e3).dot()));
@@ -82,7 +82,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("generator", |line| line.sampler.to_string())
         .column("samples per pixel", |line| line.spp.to_string())
         .column("threads", |line| line.crew.clone())
-        .told("median seconds", Decimals(4), |line| line.seconds)
+        .estimated("median seconds", Decimals(4), |line| line.seconds)
         .number("switches per second", Decimals(0), |line| typical(&line.rows, switches_per_second))
         .number("CPU / wall", Decimals(2), |line| typical(&line.rows, |row| Some(row.cpu_s()? / row.makespan_s?)))
         .number("system share of CPU", Decimals(2), |line| {

@@ -62,7 +62,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let efficiencies = medians(cells.clone(), results.stopping());
     let caption = bars(efficiencies.iter().map(|(_, efficiency)| *efficiency));
     let lines = gathered(efficiencies.into_iter().map(|((name, job_s), efficiency)| (name, (job_s, efficiency))));
-    let line = |(index, (strategy, mut places)): (usize, (String, Vec<(f64, Told)>))| {
+    let line = |(index, (strategy, mut places)): (usize, (String, Vec<(f64, Estimated)>))| {
         places.sort_by(|a, b| a.0.total_cmp(&b.0));
         let points = places.iter().map(|(job_s, efficiency)| efficiency.above(job_s * 1e6));
         Series::new(strategy, Look::nth(index), points.collect())
@@ -128,7 +128,7 @@ fn compared(results: &Results, first: &str, second: &str) -> Result<Vec<Block>> 
         .column("pieces", |(row, _)| row.decomposition.clone())
         .column("jobs", |(row, _)| row.jobs.to_string())
         .column("threads", |(row, _)| row.threads.to_string())
-        .told("ratio", Decimals(3), |(_, ratio)| Told::from(*ratio))
+        .estimated("ratio", Decimals(3), |(_, ratio)| Estimated::from(*ratio))
         .end();
     Ok(vec![Block::finding(finding), table])
 }
@@ -166,7 +166,7 @@ fn overhead(results: &Results, baseline: &Baseline<'_>) -> Block {
     });
     let mut extra = medians(extra, results.stopping());
     extra.sort_by(|(_, a), (_, b)| (a.is_partial).cmp(&b.is_partial).then(a.value.total_cmp(&b.value)));
-    let rows = extra.iter().map(|(name, told)| PlotRow::new(name, vec![Some(told.dot())])).collect();
+    let rows = extra.iter().map(|(name, told)| DotRow::new(name, vec![Some(told.dot())])).collect();
     let mut plot = DotPlot::new("What a job costs beside its work", Axis::log("nanoseconds per job"), rows);
     plot.subtitle = results.workload();
     plot.caption = format!(

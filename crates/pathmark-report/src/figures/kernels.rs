@@ -70,7 +70,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("kernel", |line| line.kernel.clone())
         .number("Msamples/s", Decimals(2), |line| line.rate(|row| row.paths))
         .number("Mrays/s", Decimals(2), |line| line.rate(|row| row.rays))
-        .told(format!("times as fast as {yardstick}"), Decimals(2), |line| line.ratio.map(Told::from));
+        .estimated(format!("times as fast as {yardstick}"), Decimals(2), |line| line.ratio.map(Estimated::from));
     if results.rows().any(|row| row.device_compile_s.is_some()) {
         table = table
             .number("s to compile", Decimals(2), |line| typical(&line.rows, |row| row.device_compile_s))
@@ -117,8 +117,8 @@ fn plot(results: &Results, works: &[Vec<Line<'_>>], yardstick: &str) -> DotPlot 
     let alone = || works.iter().filter(|lines| lines[0].threads == 1);
     let ratio = |lines: &[Line<'_>], kernel: &str| lines.iter().find(|line| line.kernel == kernel)?.ratio;
     let rows = alone().map(|lines| {
-        let dots = kernels().map(|kernel| Some(Told::from(ratio(lines, kernel)?).dot()));
-        PlotRow::new(&lines[0].name, dots.collect())
+        let dots = kernels().map(|kernel| Some(Estimated::from(ratio(lines, kernel)?).dot()));
+        DotRow::new(&lines[0].name, dots.collect())
     });
     let axis = Axis::log(format!("samples per second / those of the {yardstick} kernel")).including([1.0]);
     let has_devices = kernels().any(|kernel| kernel.contains(DEVICE_KERNEL.name));

@@ -20,7 +20,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut ratios = time_ratios(cells, any_schedule, results.stopping())?;
     ratios.sort_by(|a, b| a.1.rising(&b.1));
     let rows =
-        ratios.iter().map(|(schedule, ratio)| PlotRow::new(&schedule.name, vec![Some(Told::from(*ratio).dot())]));
+        ratios.iter().map(|(schedule, ratio)| DotRow::new(&schedule.name, vec![Some(Estimated::from(*ratio).dot())]));
     let axis = Axis::linear(format!("time / time of {yardstick}")).including([0.95, 1.05]);
     let title = if yardstick == OPENMP { "OpenMP's dynamic schedule" } else { &yardstick };
     let mut plot = DotPlot::new(format!("Time against {title}"), axis, rows.collect());

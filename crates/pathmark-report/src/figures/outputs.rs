@@ -30,10 +30,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         Line { output, decomposition, threads, rows: of(cell), ratio: ratios.get(&cell).copied() }
     });
     let lines: Vec<Line<'_>> = lines.collect();
-    let dot = |line: &Line<'_>| Some(Told::from(line.ratio?).dot());
+    let dot = |line: &Line<'_>| Some(Estimated::from(line.ratio?).dot());
     let rows = lines
         .chunk_by(|a, b| a.output == b.output)
-        .map(|own| PlotRow::new(own[0].output, own.iter().map(dot).collect()));
+        .map(|own| DotRow::new(own[0].output, own.iter().map(dot).collect()));
     let mut plot = DotPlot::new(
         format!("Time by output, against {yardstick}"),
         Axis::linear(format!("time / time with {yardstick}")).including([0.95, 1.05]),
@@ -50,8 +50,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("pieces", |line| line.decomposition.to_string())
         .column("threads", |line| line.threads.to_string())
         .number("median ms", Decimals(3), |line| typical(line.rows, |row| Some(row.makespan_s? * 1e3)))
-        .told(format!("time / time with {yardstick}"), Decimals(3), |line| {
-            if line.output == yardstick { Some(Told::of(1.0, None)) } else { line.ratio.map(Told::from) }
+        .estimated(format!("time / time with {yardstick}"), Decimals(3), |line| {
+            if line.output == yardstick { Some(Estimated::of(1.0, None)) } else { line.ratio.map(Estimated::from) }
         })
         .number("ms to put the film together", Decimals(3), |line| typical(line.rows, |row| Some(row.merge_s? * 1e3)))
         .number("peak memory, MiB", Decimals(1), |line| {

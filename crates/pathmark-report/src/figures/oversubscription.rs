@@ -87,7 +87,7 @@ fn finding(results: &Results, claim: &Claim) -> Result<Option<Block>> {
     let against_sections = Partners::of(fewer, without_pieces)?.pairs(own()).costs(seconds);
     let against_few = Partners::of(few, with_pieces)?.pairs(own()).costs(seconds);
     let in_words = |ratios: &Repeats| {
-        let Told { value, interval, .. } = ratios.median(results.stopping())?;
+        let Estimated { value, interval, .. } = ratios.median(results.stopping())?;
         let interval = interval?;
         let verdict = match (interval.low > 1.0, interval.high < 1.0) {
             (true, _) => "longer",

@@ -20,7 +20,7 @@ struct Place<'a> {
     /// Scene and size: prices in others are not compared with its price.
     setting: (&'a str, u32, u32),
     spp: u32,
-    seconds: Told,
+    seconds: Estimated,
     mse: f64,
 }
 
@@ -73,7 +73,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let table = Block::table("rmse-against-time", "Price of accuracy by schedule", &places)
         .column("schedule", |place| label(&place.key))
         .column("spp", |place| place.spp.to_string())
-        .told("median seconds", Decimals(4), |place| place.seconds)
+        .estimated("median seconds", Decimals(4), |place| place.seconds)
         .number("RMSE, linear", Decimals(5), |place| place.mse.sqrt())
         .number("MSE x seconds", Significant(4), |place| place.price())
         .end();

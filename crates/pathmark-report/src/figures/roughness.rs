@@ -17,8 +17,8 @@ struct Pair<'a> {
     scene: &'a str,
     cosine: &'a [&'a Row],
     facets: &'a [&'a Row],
-    variance: Option<Told>,
-    time: Option<Told>,
+    variance: Option<Estimated>,
+    time: Option<Estimated>,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
@@ -45,7 +45,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         pairs.push(Pair { scene, cosine, facets, variance, time });
     }
     let mut blocks: Vec<Block> = sheet(results, &pairs)?.into_iter().collect();
-    let compared: Vec<(&str, Told, Told)> =
+    let compared: Vec<(&str, Estimated, Estimated)> =
         pairs.iter().filter_map(|pair| Some((pair.scene, pair.variance?, pair.time?))).collect();
     if !compared.is_empty() {
         blocks.push(Block::figure("roughness", plot(results, &compared)));
@@ -60,10 +60,10 @@ fn variance(row: &Row) -> Option<f64> {
     row.mse.filter(|mse| *mse > 0.0)
 }
 
-fn plot(results: &Results, compared: &[(&str, Told, Told)]) -> DotPlot {
+fn plot(results: &Results, compared: &[(&str, Estimated, Estimated)]) -> DotPlot {
     let rows = compared
         .iter()
-        .map(|(scene, variance, time)| PlotRow::new(*scene, vec![Some(variance.dot()), Some(time.dot())]));
+        .map(|(scene, variance, time)| DotRow::new(*scene, vec![Some(variance.dot()), Some(time.dot())]));
     let axis = Axis::log("by facets / by cosine, at equal samples").including([0.9, 1.1]);
     let plot = DotPlot::new("Directions by the facets against directions by the cosine", axis, rows.collect());
     let mut plot = plot.grouped(["variance of the image", "time"]);
@@ -74,7 +74,7 @@ fn plot(results: &Results, compared: &[(&str, Told, Told)]) -> DotPlot {
     plot
 }
 
-fn finding((scene, variance, time): &(&str, Told, Told)) -> Block {
+fn finding((scene, variance, time): &(&str, Estimated, Estimated)) -> Block {
     let words = |interval: Option<Interval>| interval.map_or("no interval".to_string(), |i| with_level(&i, 2));
     let verdict = match variance.interval {
         Some(interval) if interval.high < 1.0 => "the facets are the better guide",

@@ -39,7 +39,7 @@ struct Accuracy {
     /// Relative RMSE of each seed, without the scene.
     by_seed: Repeats,
     /// Root of the mean of their squares.
-    error: Told,
+    error: Estimated,
     rays: f64,
     /// CPU seconds of a sample.
     sample_s: f64,
@@ -82,7 +82,7 @@ fn accuracies(results: &Results) -> Result<Vec<Accuracy>> {
         let mse = |row: &Row| Some(row.mse? / (radiance * radiance));
         let squares = Repeats::of_images(rows.iter().copied(), without_scene, mse).values();
         let interval = over_seeds(&squares, LEVEL).map(|error| error.rmse.interval);
-        let error = Told::of((squares.iter().sum::<f64>() / squares.len() as f64).sqrt(), interval);
+        let error = Estimated::of((squares.iter().sum::<f64>() / squares.len() as f64).sqrt(), interval);
         let series = results.series_name(first);
         let accuracy = Accuracy {
             name: if series.is_empty() { image.scene.clone() } else { series },
@@ -198,7 +198,7 @@ fn table(scenes: &[Accuracy], goal: f64) -> Block {
         .column("scene", |scene| scene.name.clone())
         .number("mean radiance", Decimals(4), |scene| scene.radiance)
         .number("RMSE, linear", Decimals(4), |scene| scene.error.value * scene.radiance)
-        .told("RMSE / mean radiance", Decimals(4), |scene| scene.error)
+        .estimated("RMSE / mean radiance", Decimals(4), |scene| scene.error)
         .column("seeds", |scene| scene.by_seed.values().len().to_string())
         .number("rays per sample", Decimals(2), |scene| scene.rays)
         .number("ns per sample", Decimals(0), |scene| scene.sample_s * 1e9)

@@ -8,7 +8,7 @@ struct Line<'a> {
     first: &'a Row,
     rows: Vec<&'a Row>,
     times: Vec<f64>,
-    seconds: Told,
+    seconds: Estimated,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
@@ -33,7 +33,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             .column("threads", |line| line.first.threads.to_string())
             .column("jobs", |line| line.first.jobs.to_string())
             .column("runs", |line| line.times.len().to_string())
-            .told("median seconds", Decimals(4), |line| line.seconds)
+            .estimated("median seconds", Decimals(4), |line| line.seconds)
             .number("CPU / wall", Decimals(2), |line| typical(&line.rows, |row| Some(row.cpu_s()? / row.makespan_s?)))
             .number("load imbalance", Decimals(3), |line| typical(&line.rows, imbalance))
             .number("longest job, ms", Decimals(1), |line| {

@@ -11,7 +11,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let lines = gathered(
         speedups
             .iter()
-            .map(|(schedule, speedup)| (&schedule.name, Told::from(*speedup).above(schedule.key.threads as f64))),
+            .map(|(schedule, speedup)| (&schedule.name, Estimated::from(*speedup).above(schedule.key.threads as f64))),
     );
     let mut chart = LineChart::new(
         "Weak scaling: scaled speedup against threads",

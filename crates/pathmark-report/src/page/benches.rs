@@ -1,13 +1,13 @@
 //! Results of `cargo bench --bench scheduling`: it writes `benches/benches.csv` into the folder that
 //! `PATHMARK_BENCH_OUT` names.
 
-use super::block::Block;
-use super::page::Section;
-use super::table::Digits::Decimals;
+use crate::block::Block;
 use crate::csv_file;
 use crate::error::{Error, Result};
 use crate::experiment::{Chapter, MACHINE, RunFile, read_run_file};
-use crate::plot::{Axis, Dot, DotPlot, Row};
+use crate::page::Section;
+use crate::plot::{Axis, Dot, DotPlot, DotRow};
+use crate::table::Digits::Decimals;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -61,7 +61,7 @@ pub fn write_benches(out: &Path, command: String, rows: &[BenchRow]) -> Result<(
 }
 
 /// The section, if a folder has such a file. Writes its figure and tables beside the file.
-pub(super) fn section(out: &Path) -> Result<Option<Section>> {
+pub(crate) fn section(out: &Path) -> Result<Option<Section>> {
     let folder = out.join(FOLDER);
     let path = folder.join(FILE);
     if !path.is_file() {
@@ -117,7 +117,7 @@ fn pairs(rows: &[BenchRow]) -> Vec<(&BenchRow, &BenchRow)> {
 fn plot(speedups: &[(&BenchRow, [f64; 3])], machine: String) -> DotPlot {
     let row = |(row, [speedup, low, high]): &(&BenchRow, [f64; 3])| {
         let dot = Dot::new(*speedup, Some((*low, *high)));
-        Row::new(format!("{}, {}", row.case, row.parameter), vec![Some(dot)])
+        DotRow::new(format!("{}, {}", row.case, row.parameter), vec![Some(dot)])
     };
     let mut plot = DotPlot::new(
         "Speedup by cargo bench",
