@@ -25,3 +25,23 @@ pub fn read<R: DeserializeOwned>(path: &Path) -> Result<Vec<R>> {
         InputError::new("row", "", problem).in_file(path.display().to_string(), at).into()
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cell with a comma comes back, and a wrong cell is named with its line.
+    #[test]
+    fn rows_come_back_and_a_wrong_one_is_told_with_its_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.csv");
+        let rows = [("a, b".to_string(), 1), ("c".to_string(), 2)];
+        write(&path, &rows).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        std::fs::write(&path, format!("name,number\n{text}")).unwrap();
+        assert_eq!(read::<(String, u32)>(&path).unwrap(), rows);
+        std::fs::write(&path, format!("name,number\n{text}d,many\n")).unwrap();
+        let error = read::<(String, u32)>(&path).unwrap_err().to_string();
+        assert!(error.contains("rows.csv:4") && error.contains("invalid digit"), "{error}");
+    }
+}

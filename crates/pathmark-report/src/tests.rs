@@ -106,8 +106,7 @@ pub(super) fn svg(blocks: &[Block], name: &str) -> String {
 
 /// The first table.
 pub(super) fn table(blocks: &[Block]) -> &Table {
-    let table = |block| if let Block::Table { table, .. } = block { Some(table) } else { None };
-    blocks.iter().find_map(table).unwrap()
+    blocks.iter().find_map(|block| if let Block::Table { table, .. } = block { Some(table) } else { None }).unwrap()
 }
 
 #[test]
