@@ -65,7 +65,7 @@ pub fn prediction_blocks(predictions: &[Prediction]) -> Vec<Block> {
         ),
         Some(found) => Block::finding(format!(
             "{} of this machine predicted from serial runs: median absolute error {}, worst {}, bias {:+.1} %. That is over the {quiet} of {runs} runs whose CPU time was within {:.0} % of that of the serial run \
-             beside them, so that it was the schedule that made their time; over all runs the median is {}, the worst {}. Estimated besides what CPU time each run took, which is no prediction: median {}, worst {}.",
+             beside them, so that it was the schedule that made their time; over all runs the median is {}, the worst {}. Told besides what CPU time each run took, which is no prediction: median {}, worst {}.",
             counted(predictions.iter().filter(|prediction| prediction.undisturbed > 0).count(), "schedule"),
             percent(found.median_absolute),
             percent(found.worst_absolute),
