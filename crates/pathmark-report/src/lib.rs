@@ -13,6 +13,7 @@ pub mod rank_forecasts;
 mod reference_image;
 mod results;
 mod rows;
+mod serial;
 #[cfg(test)]
 mod tests;
 pub mod timeline;
@@ -31,7 +32,7 @@ use pathmark_harness::{
     analysis, atomic_file, cases_file, cluster, csv_file, digest, error, experiment, files, film_file, guard_prices,
     image_io, input, kernel, lab, measure, metric, scene, shell, simulate,
 };
-use rows::{naming, paired, schedule, serial};
+use rows::{naming, paired, schedule};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

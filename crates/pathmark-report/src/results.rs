@@ -4,7 +4,6 @@ use super::estimated::Estimated;
 use super::naming::{Part, joined, needed};
 use super::rows::{Row, gathered, group};
 use super::schedule::{Schedule, over_ranks, strategy};
-use super::serial::Serial;
 use crate::analysis::confidence_sequence::Stopping;
 use crate::error::{InputError, Result};
 use crate::experiment::{Definition, EXTERNAL, Profile, RunFile, read_records, read_run_file, trace_file};
@@ -77,11 +76,6 @@ impl Results {
     /// Rows by schedule.
     pub(super) fn by_schedule(&self) -> BTreeMap<&Schedule, Vec<&Row>> {
         self.by(|row| &row.schedule)
-    }
-
-    /// The schedules paired with the serial runs.
-    pub(super) fn serial(&self) -> Result<Serial<'_>> {
-        Serial::of(self)
     }
 
     /// The warnings of each row that did not fail.

@@ -3,7 +3,6 @@
 pub(crate) mod naming;
 pub(crate) mod paired;
 pub(crate) mod schedule;
-pub(crate) mod serial;
 
 use crate::analysis::quantile::median;
 use crate::measure::{ImageKey, Record, ScheduleKey};

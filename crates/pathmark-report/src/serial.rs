@@ -1,16 +1,16 @@
 //! Schedules paired with the serial runs of the same image in the same repetition.
 
+use super::results::Results;
+use super::rows::paired::{Pairs, Partners, Ratio, Repeats, along, in_common, medians, with_intervals};
+use super::rows::schedule::Schedule;
+use super::rows::{Row, gathered};
 use crate::analysis::confidence_sequence::Stopping;
 use crate::error::Result;
 use crate::measure::{ImageKey, ScheduleKey};
-use crate::paired::{Pairs, Partners, Ratio, Repeats, along, in_common, medians, with_intervals};
-use crate::results::Results;
-use crate::rows::{Row, gathered};
-use crate::schedule::Schedule;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The schedules of an experiment, and the serial runs that they are compared with.
-pub(crate) struct Serial<'a> {
+pub(super) struct Serial<'a> {
     schedules: BTreeMap<&'a Schedule, Vec<&'a Row>>,
     /// The serial runs on the same pieces.
     on_pieces: Partners<'a>,
@@ -24,21 +24,28 @@ pub(crate) struct Serial<'a> {
 }
 
 /// A line of a chart: the threads of its points, and the speedups of each.
-pub(crate) type Line = Vec<(usize, Vec<f64>)>;
+pub(super) type Line = Vec<(usize, Vec<f64>)>;
 
 /// Keeps the properties that a row shares with the serial run on the same pieces.
-pub(crate) fn with_pieces(_: &mut ImageKey, schedule: &mut ScheduleKey) {
+pub(super) fn with_pieces(_: &mut ImageKey, schedule: &mut ScheduleKey) {
     schedule.forget_workers();
 }
 
 /// Keeps the properties that a row shares with all serial runs of its image.
-pub(crate) fn without_pieces(_: &mut ImageKey, schedule: &mut ScheduleKey) {
+pub(super) fn without_pieces(_: &mut ImageKey, schedule: &mut ScheduleKey) {
     schedule.forget_workers();
     schedule.decomposition.clear();
 }
 
+impl Results {
+    /// The schedules paired with the serial runs.
+    pub(super) fn serial(&self) -> Result<Serial<'_>> {
+        Serial::of(self)
+    }
+}
+
 impl<'a> Serial<'a> {
-    pub(crate) fn of(results: &'a Results) -> Result<Self> {
+    fn of(results: &'a Results) -> Result<Self> {
         let schedules = results.by_schedule();
         let serial = || schedules.iter().filter(|(s, _)| s.is_serial()).flat_map(|(_, rows)| rows.iter().copied());
         let sizes = results.by(|row| (row.width, row.height)).into_iter();
@@ -55,51 +62,51 @@ impl<'a> Serial<'a> {
     }
 
     /// All schedules except the serial ones.
-    pub(crate) fn others(&self) -> impl Iterator<Item = &'a Schedule> {
+    pub(super) fn others(&self) -> impl Iterator<Item = &'a Schedule> {
         self.schedules.keys().copied().filter(|schedule| !schedule.is_serial())
     }
 
     /// The rows of a schedule.
-    pub(crate) fn rows(&self, schedule: &Schedule) -> &[&'a Row] {
+    pub(super) fn rows(&self, schedule: &Schedule) -> &[&'a Row] {
         self.schedules.get(schedule).map_or(&[], Vec::as_slice)
     }
 
     /// Runs with the serial runs on the same pieces.
-    pub(crate) fn on_pieces(&self, rows: impl IntoIterator<Item = &'a Row>) -> Pairs<'a> {
+    pub(super) fn on_pieces(&self, rows: impl IntoIterator<Item = &'a Row>) -> Pairs<'a> {
         self.on_pieces.pairs(rows)
     }
 
     /// Runs with the fastest serial runs of their images.
-    pub(crate) fn with_fastest(&self, rows: impl IntoIterator<Item = &'a Row>) -> Pairs<'a> {
+    pub(super) fn with_fastest(&self, rows: impl IntoIterator<Item = &'a Row>) -> Pairs<'a> {
         self.fastest.pairs(rows)
     }
 
     /// Pairs each run of a schedule with the serial run on the same pieces.
-    pub(crate) fn pairs(&self, schedule: &Schedule) -> Pairs<'a> {
+    pub(super) fn pairs(&self, schedule: &Schedule) -> Pairs<'a> {
         self.on_pieces(self.rows(schedule).iter().copied())
     }
 
     /// Pairs each run that is not serial with the serial run on the same pieces, in the order of the rows.
-    pub(crate) fn in_order(&self, results: &'a Results) -> Pairs<'a> {
+    pub(super) fn in_order(&self, results: &'a Results) -> Pairs<'a> {
         self.on_pieces(results.rows().filter(|row| !row.schedule.is_serial()))
     }
 
     /// The gains of runs over `serial` for the same image in the same repetition.
-    pub(crate) fn gains(&self, rows: &[&'a Row], value: impl Fn(&Row) -> Option<f64>) -> Repeats {
+    pub(super) fn gains(&self, rows: &[&'a Row], value: impl Fn(&Row) -> Option<f64>) -> Repeats {
         // Prefer the serial run on the same pieces: other pieces change at least the caches.
         let gains = self.on_pieces(rows.iter().copied()).gains(&value);
         if gains.is_empty() { self.with_fastest(rows.iter().copied()).gains(value) } else { gains }
     }
 
     /// The speedup of each schedule: the median of the ratios to `serial`.
-    pub(crate) fn speedups(&self) -> Vec<(&'a Schedule, Ratio)> {
+    pub(super) fn speedups(&self) -> Vec<(&'a Schedule, Ratio)> {
         let own = |schedule| (schedule, self.gains(self.rows(schedule), |row| row.makespan_s));
         with_intervals(along(self.others().map(own), |schedule| self.line(schedule), self.stopping))
     }
 
     /// The speedups at numbers of workers that have a processor each, by line; in each line only those repetitions that
     /// all its points have.
-    pub(crate) fn lines(&self, processors: usize) -> BTreeMap<String, Line> {
+    pub(super) fn lines(&self, processors: usize) -> BTreeMap<String, Line> {
         let own = self.others().filter(|schedule| schedule.key.threads <= processors).map(|schedule| {
             (self.line(schedule), (schedule.key.threads, self.pairs(schedule).gains(|row| row.makespan_s)))
         });
@@ -108,14 +115,14 @@ impl<'a> Serial<'a> {
 
     /// CPU time of each schedule over that of `serial` on the same pieces in the same repetition: the median of the
     /// ratios. It shows how much more the same work costs on several processors, plus the cost of the schedule itself.
-    pub(crate) fn work_inflation(&self) -> BTreeMap<&'a Schedule, f64> {
+    pub(super) fn work_inflation(&self) -> BTreeMap<&'a Schedule, f64> {
         let own = self.others().map(|schedule| (schedule, self.pairs(schedule).costs(|row| row.cpu_s())));
         medians(own, self.stopping).into_iter().map(|(schedule, told)| (schedule, told.value)).collect()
     }
 
     /// A name for the schedules of a line: the strategy, with its pieces if there are several decompositions, and with
     /// the image size if most rows have another.
-    pub(crate) fn line(&self, schedule: &Schedule) -> String {
+    pub(super) fn line(&self, schedule: &Schedule) -> String {
         let name = if self.names_pieces {
             format!("{}, {}", schedule.name, schedule.key.decomposition)
         } else {
