@@ -19,6 +19,7 @@ const EXCEPTIONS: &[(&str, Exception)] = &[
     ("lock", Besides(&["error", "digest", "file_id"])),
     ("temporary", Besides(&["disk", "lock"])),
     ("atomic_file", Besides(&["error", "disk", "file_id", "temporary"])),
+    ("csv_file", Besides(&["error", "atomic_file"])),
     ("files", Besides(&["error", "file_id", "atomic_file"])),
     ("metric", Besides(&["image_io"])),        // metrics compare images
     ("analysis", Only(&[])),                   // statistics on plain numbers, whatever was measured

@@ -1,4 +1,4 @@
-//! Ratios of two rows come from one place, `crates/pathmark-report/src/paired.rs`, which pairs rows of one image in one repetition. A
+//! Ratios of two rows come from one place, `crates/pathmark-report/src/rows/paired.rs`, which pairs rows of one image in one repetition. A
 //! ratio of two medians that a figure divides by itself may compare other sizes, samples or repetitions.
 //!
 //! Elsewhere in the report, code divides only: by a number, by the number of values or by a value of the same row; a
@@ -8,12 +8,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The file that pairs rows.
-const PAIRED: &str = "paired.rs";
+const PAIRED: &str = "rows/paired.rs";
 
 /// Divisions of other values: the file, the reason, and each division as it is written.
 const EXCEPTIONS: &[(&str, &str, &[&str])] = &[
     (
-        "benches.rs",
+        "page/benches.rs",
         "criterion measures each case in a row of its own, without repetitions; the ends of intervals are paired crosswise",
         &["other.median_s / self.median_s", "other.low_s / self.high_s", "other.high_s / self.low_s"],
     ),
@@ -174,7 +174,7 @@ fn only_one_file_divides_values_of_two_rows() {
     }
     assert!(
         wrong.is_empty(),
-        "divide by `report::paired`, or tell the reason in tests/library/pairing.rs:\n{}",
+        "divide by `rows::paired`, or tell the reason in tests/library/pairing.rs:\n{}",
         wrong.join("\n")
     );
 }

@@ -1,7 +1,7 @@
 //! `check/cases.csv`: the outcome of each hard case, as evidence for claims.
 
-use crate::atomic_file;
-use crate::error::{Error, InputError, Result};
+use crate::csv_file;
+use crate::error::{Error, Result};
 use crate::files::Files;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -50,25 +50,11 @@ pub fn claim(out: &Path, files: &mut Files) -> Result<()> {
 pub fn write(out: &Path, rows: &[CaseRow]) -> Result<()> {
     let folder = out.join(FOLDER);
     std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
-    atomic_file::write(&folder.join(FILE), |file| {
-        let mut writer = csv::Writer::from_writer(file);
-        for row in rows {
-            writer.serialize(row)?;
-        }
-        writer.flush()
-    })
+    csv_file::write(&folder.join(FILE), rows)
 }
 
 /// The list in a folder of results; empty if there is none.
 pub fn read(out: &Path) -> Result<Vec<CaseRow>> {
     let path = out.join(FOLDER).join(FILE);
-    if !path.is_file() {
-        return Ok(Vec::new());
-    }
-    let file = std::fs::File::open(&path).map_err(|e| Error::system("reading", &path, e))?;
-    let rows: std::result::Result<_, csv::Error> = csv::Reader::from_reader(file).into_deserialize().collect();
-    rows.map_err(|error| {
-        let line = error.position().map(|position| (position.line() as usize, 1));
-        InputError::new("row", "", error.to_string()).in_file(path.display().to_string(), line).into()
-    })
+    if path.is_file() { csv_file::read(&path) } else { Ok(Vec::new()) }
 }

@@ -1,7 +1,7 @@
 //! `guards.csv`: the measured price list of the guards that keep hard inputs correct.
 
-use crate::atomic_file;
-use crate::error::{Error, InputError, Result};
+use crate::csv_file;
+use crate::error::Result;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -53,21 +53,10 @@ pub struct PriceRow {
 
 /// Writes the list.
 pub fn write_prices(path: &Path, rows: &[PriceRow]) -> Result<()> {
-    atomic_file::write(path, |file| {
-        let mut writer = csv::Writer::from_writer(file);
-        for row in rows {
-            writer.serialize(row)?;
-        }
-        writer.flush()
-    })
+    csv_file::write(path, rows)
 }
 
 /// Reads a list.
 pub fn read_prices(path: &Path) -> Result<Vec<PriceRow>> {
-    let file = std::fs::File::open(path).map_err(|e| Error::system("reading", path, e))?;
-    let rows: std::result::Result<_, csv::Error> = csv::Reader::from_reader(file).deserialize().collect();
-    rows.map_err(|error| {
-        let line = error.position().map(|position| (position.line() as usize, 1));
-        InputError::new("row", "", error.to_string()).in_file(path.display().to_string(), line).into()
-    })
+    csv_file::read(path)
 }

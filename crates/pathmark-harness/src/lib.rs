@@ -9,6 +9,7 @@
 pub mod atomic_file;
 pub mod cases_file;
 pub mod cluster;
+pub mod csv_file;
 pub mod disk;
 pub mod experiment;
 pub mod file_id;

@@ -1,11 +1,11 @@
 //! Contenders: the ways to render a scene that an experiment compares by price. Each has error curves over seeds, and
 //! seconds per sample.
 
+use super::estimated::LEVEL;
 use super::naming::{Part, joined, needed};
 use super::results::{Results, prefixed};
-use super::rows::{Row, group};
+use super::rows::{Row, group, values};
 use super::schedule::{crew, strategy};
-use super::words::{LEVEL, values};
 use crate::analysis::Interval;
 use crate::analysis::jackknife::{Curve, SeedCurves};
 use crate::analysis::mean::geometric_interval;

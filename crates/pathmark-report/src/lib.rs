@@ -1,16 +1,11 @@
 //! The report: turns records into figures, tables, findings and one self-contained page.
 
-mod again;
-mod benches;
-mod block;
 pub mod claims;
 mod contenders;
+mod estimated;
 mod figures;
 pub mod forecasts;
-mod guards;
-mod naming;
 mod page;
-mod paired;
 #[cfg(test)]
 mod pairing_tests;
 pub mod plot;
@@ -18,27 +13,26 @@ pub mod rank_forecasts;
 mod reference_image;
 mod results;
 mod rows;
-mod schedule;
 mod serial;
-mod table;
 #[cfg(test)]
 mod tests;
 pub mod timeline;
 mod words;
 
-pub use benches::{BenchRow, write_benches};
-pub use block::Block;
 pub use figures::{FIGURES, FigureEntry, check_figures, figure_of_serial};
+pub use page::benches::{BenchRow, write_benches};
+pub use page::block::Block;
 pub use results::Results;
 
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
 use crate::lab::Lab;
-use page::Section;
+use page::{Section, benches, block, guards, table};
 use pathmark_harness::{
-    analysis, atomic_file, cases_file, cluster, digest, error, experiment, files, film_file, guard_prices, image_io,
-    input, kernel, lab, measure, metric, scene, shell, simulate,
+    analysis, atomic_file, cases_file, cluster, csv_file, digest, error, experiment, files, film_file, guard_prices,
+    image_io, input, kernel, lab, measure, metric, scene, shell, simulate,
 };
+use rows::{naming, paired, schedule};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

@@ -3,7 +3,7 @@
 use super::block::Block;
 use super::figures::{FIGURES, blocks};
 use super::results::Results;
-use super::tests::{results, row, words};
+use super::tests::{results, row, svg, table, words};
 use crate::measure::Record;
 
 /// How many times as long the second image takes as the first.
@@ -234,13 +234,6 @@ fn drifting() -> Vec<Record> {
 #[test]
 fn cells_with_fewer_repetitions_are_hollow_and_not_ranked() {
     let rows = || drifting().into_iter().filter(|row| row.effects == "smallpt");
-    let svg = |blocks: &[Block], name: &str| {
-        let figure = blocks.iter().find_map(|block| match block {
-            Block::Figure { stem, figure } if *stem == name => Some(figure.svg().unwrap()),
-            _ => None,
-        });
-        figure.unwrap()
-    };
     let results = results(&["speedup", "clock"], "", rows().collect()).unwrap();
     let found = results.serial().unwrap().speedups();
     let found: Vec<_> = found.iter().map(|(own, ratio)| (&*own.name, ratio.value, ratio.is_partial)).collect();
@@ -313,13 +306,6 @@ fn no_line_joins_points_of_other_repetitions() {
     };
     let drift = |row: &Record| if row.repetition < 3 { 1.0 } else { 2.0 };
     let blocks_of = |figure: &str, rows: Vec<Record>| blocks(&results(&[figure], "", rows).unwrap()).unwrap();
-    let svg = |blocks: &[Block], name: &str| {
-        let found = blocks.iter().find_map(|block| match block {
-            Block::Figure { stem, figure } if *stem == name => Some(figure.svg().unwrap()),
-            _ => None,
-        });
-        found.unwrap()
-    };
     let is_hollow = |svg: String| svg.contains("Hollow: fewer seeds");
 
     // Weak scaling: each number of threads renders an image of its own.
@@ -407,6 +393,5 @@ fn many_strategies_are_compared() {
         rows.push(if index == 0 { own } else { parallel(own) });
     }
     let found = blocks(&results(&["speedup"], "", rows).unwrap()).unwrap();
-    let table = found.iter().find_map(|block| if let Block::Table { table, .. } = block { Some(table) } else { None });
-    assert_eq!(table.unwrap().len(), 5999);
+    assert_eq!(table(&found).len(), 5999);
 }

@@ -1,10 +1,9 @@
 //! Results of an experiment, read from its folder.
 
+use super::estimated::Estimated;
 use super::naming::{Part, joined, needed};
 use super::rows::{Row, gathered, group};
 use super::schedule::{Schedule, over_ranks, strategy};
-use super::serial::Serial;
-use super::words::Told;
 use crate::analysis::confidence_sequence::Stopping;
 use crate::error::{InputError, Result};
 use crate::experiment::{Definition, EXTERNAL, Profile, RunFile, read_records, read_run_file, trace_file};
@@ -79,11 +78,6 @@ impl Results {
         self.by(|row| &row.schedule)
     }
 
-    /// The schedules paired with the serial runs.
-    pub(super) fn serial(&self) -> Result<Serial<'_>> {
-        Serial::of(self)
-    }
-
     /// The warnings of each row that did not fail.
     pub(super) fn warnings(&self) -> impl Iterator<Item = &str> {
         self.rows.iter().map(|row| row.warnings.as_str())
@@ -95,8 +89,8 @@ impl Results {
     }
 
     /// The median of some values with the interval that the number of repetitions allows.
-    pub(super) fn median(&self, values: &[f64]) -> Option<Told> {
-        Told::median(values, self.stopping())
+    pub(super) fn median(&self, values: &[f64]) -> Option<Estimated> {
+        Estimated::median(values, self.stopping())
     }
 
     /// Doubts about the times of the rows that did not fail.

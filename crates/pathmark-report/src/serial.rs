@@ -1,9 +1,9 @@
 //! Schedules paired with the serial runs of the same image in the same repetition.
 
-use super::paired::{Pairs, Partners, Ratio, Repeats, along, in_common, medians, with_intervals};
 use super::results::Results;
+use super::rows::paired::{Pairs, Partners, Ratio, Repeats, along, in_common, medians, with_intervals};
+use super::rows::schedule::Schedule;
 use super::rows::{Row, gathered};
-use super::schedule::Schedule;
 use crate::analysis::confidence_sequence::Stopping;
 use crate::error::Result;
 use crate::measure::{ImageKey, ScheduleKey};
@@ -37,8 +37,15 @@ pub(super) fn without_pieces(_: &mut ImageKey, schedule: &mut ScheduleKey) {
     schedule.decomposition.clear();
 }
 
+impl Results {
+    /// The schedules paired with the serial runs.
+    pub(super) fn serial(&self) -> Result<Serial<'_>> {
+        Serial::of(self)
+    }
+}
+
 impl<'a> Serial<'a> {
-    pub(super) fn of(results: &'a Results) -> Result<Self> {
+    fn of(results: &'a Results) -> Result<Self> {
         let schedules = results.by_schedule();
         let serial = || schedules.iter().filter(|(s, _)| s.is_serial()).flat_map(|(_, rows)| rows.iter().copied());
         let sizes = results.by(|row| (row.width, row.height)).into_iter();

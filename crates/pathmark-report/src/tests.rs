@@ -1,6 +1,7 @@
 use super::block::Block;
 use super::contenders::contenders;
 use super::figures::{FIGURES, blocks, check_figures};
+use super::page::table::Table;
 use super::results::Results;
 use crate::error::Error;
 use crate::experiment::{Definition, RunFile, experiments};
@@ -92,6 +93,20 @@ pub(super) fn words(blocks: &[Block]) -> String {
         Block::Table { table, .. } => table.rows().flatten().collect::<Vec<String>>().join("\n"),
     };
     blocks.iter().map(of).collect::<Vec<_>>().join("\n")
+}
+
+/// The figure of that name.
+pub(super) fn svg(blocks: &[Block], name: &str) -> String {
+    let figure = blocks.iter().find_map(|block| match block {
+        Block::Figure { stem, figure } if *stem == name => Some(figure.svg().unwrap()),
+        _ => None,
+    });
+    figure.unwrap()
+}
+
+/// The first table.
+pub(super) fn table(blocks: &[Block]) -> &Table {
+    blocks.iter().find_map(|block| if let Block::Table { table, .. } = block { Some(table) } else { None }).unwrap()
 }
 
 #[test]
@@ -244,9 +259,8 @@ fn outputs_are_told_only_where_they_were_tried() {
     let locked = Record { output: "locked".to_string(), makespan_s: Some(2.0), ..row() };
     let results = results(&["outputs"], "", vec![row(), rows, locked]).unwrap();
     let tables = blocks(&results).unwrap();
-    let table = tables.iter().find_map(|block| if let Block::Table { table, .. } = block { Some(table) } else { None });
     let told: Vec<[String; 4]> =
-        table.unwrap().rows().map(|row| [0, 1, 3, 4].map(|column: usize| row[column].clone())).collect();
+        table(&tables).rows().map(|row| [0, 1, 3, 4].map(|column: usize| row[column].clone())).collect();
     let expected = [
         ["slots", "rows", "1000.000", "1.000, no interval"],
         ["slots", "tiles:2x2", "1000.000", "1.000, no interval"],
@@ -352,13 +366,7 @@ fn the_page_begins_with_the_findings_that_experiments_name() {
 fn figures_carry_the_values_that_they_draw() {
     let results = results(&["speedup"], "", speedup_rows()).unwrap();
     let blocks = blocks(&results).unwrap();
-    let figure = |name: &str| {
-        blocks.iter().find_map(|block| match block {
-            Block::Figure { stem, figure } if *stem == name => Some(figure.svg().unwrap()),
-            _ => None,
-        })
-    };
-    let svg = figure("speedup").unwrap();
+    let svg = svg(&blocks, "speedup");
     let note = |series: &str| {
         svg.lines().find(|line| line.contains("class=\"note\"") && line.contains(&format!("data-series=\"{series}\"")))
     };

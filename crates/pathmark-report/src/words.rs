@@ -1,91 +1,29 @@
 //! Numbers and intervals as text, for tables and sentences.
 
-use super::paired::Ratio;
-use super::rows::Row;
-use crate::analysis::confidence_sequence::Stopping;
-use crate::analysis::mean::{Moments, t_interval};
-use crate::analysis::quantile::median;
-use crate::analysis::{Estimate, Interval};
-use crate::plot::{Dot, Point};
+use super::estimated::Estimated;
+use crate::analysis::Interval;
 use std::collections::BTreeSet;
-
-/// Confidence of every interval in the report.
-pub(super) const LEVEL: f64 = 0.95;
 
 /// A count with its noun: `1 thread`, `2 threads`.
 pub(super) fn counted(count: usize, thing: &str) -> String {
     if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
 }
 
-/// A value and its interval, if there were enough values for one.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Told {
-    pub(super) value: f64,
-    pub(super) interval: Option<Interval>,
-    /// The number of values that it was computed from, if counted.
-    pub(super) count: Option<usize>,
-    /// Whether it lacks repetitions that the values beside it have.
-    pub(super) is_partial: bool,
-}
-
-impl From<Estimate> for Told {
-    fn from(Estimate { value, interval }: Estimate) -> Self {
-        Self::of(value, Some(interval))
-    }
-}
-
-impl Told {
-    pub(super) fn of(value: f64, interval: Option<Interval>) -> Self {
-        Self { value, interval, count: None, is_partial: false }
-    }
-
-    /// The median of some values with its distribution-free interval.
-    pub(super) fn median(values: &[f64], stopping: Stopping) -> Option<Self> {
-        let interval = stopping.median_interval(values, LEVEL);
-        Some(Self { count: Some(values.len()), ..Self::of(median(values)?, interval) })
-    }
-
-    /// The mean of values of equal variance, with Student's interval.
-    pub(super) fn mean(values: &[f64]) -> Option<Self> {
-        let interval = t_interval(values, LEVEL).map(|estimate| estimate.interval);
-        Some(Self { count: Some(values.len()), ..Self::of(Moments::of(values).mean()?, interval) })
-    }
-
-    /// The same value in another unit.
-    pub(super) fn times(&self, factor: f64) -> Self {
-        let times = |i: Interval| Interval { low: factor * i.low, high: factor * i.high, level: i.level };
-        Self { value: factor * self.value, interval: self.interval.map(times), ..*self }
-    }
-
-    /// The ends of the interval.
-    pub(super) fn bar(&self) -> Option<(f64, f64)> {
-        self.interval.map(|interval| (interval.low, interval.high))
-    }
-
-    pub(super) fn dot(&self) -> Dot {
-        Dot { value: self.value, interval: self.bar(), count: self.count, hollow: self.is_partial }
-    }
-
-    /// The point above `x`.
-    pub(super) fn above(&self, x: f64) -> Point {
-        Point { count: self.count, hollow: self.is_partial, ..Point::new(x, self.value).with_y(self.bar()) }
-    }
-}
-
 /// The sentence of a caption about hollow marks; empty if there are none.
-pub(super) fn hollow(told: impl IntoIterator<Item = Told>) -> &'static str {
+pub(super) fn hollow(told: impl IntoIterator<Item = Estimated>) -> &'static str {
     let has_some = told.into_iter().any(|told| told.is_partial);
     if has_some { " Hollow: fewer seeds or repetitions than the others, so not comparable with them." } else { "" }
 }
 
-/// The values of those rows that have one.
-pub(super) fn values<'a>(rows: impl IntoIterator<Item = &'a Row>, value: impl Fn(&Row) -> Option<f64>) -> Vec<f64> {
-    rows.into_iter().filter_map(value).collect()
+/// The sentence of a caption about bars, and that about hollow marks.
+pub(super) fn bars<T: Into<Estimated>>(told: impl IntoIterator<Item = T>) -> String {
+    let told: Vec<Estimated> = told.into_iter().map(Into::into).collect();
+    format!("Bars: {}.{}", confidence(told.iter().filter_map(|told| told.interval)), hollow(told))
 }
 
-/// The median of a value over rows.
-pub(super) fn typical<'a>(rows: impl IntoIterator<Item = &'a Row>, value: impl Fn(&Row) -> Option<f64>) -> Option<f64> {
-    median(&values(rows, value))
+/// The caption of ratios in pairs.
+pub(super) fn ratio_bars<T: Into<Estimated>>(told: impl IntoIterator<Item = T>) -> String {
+    format!("Median of ratios within a repetition. {}", bars(told))
 }
 
 /// A number, or a dash for `None`.
@@ -98,13 +36,8 @@ pub(super) fn with_level(interval: &Interval, digits: usize) -> String {
     format!("{:.digits$} to {:.digits$} ({:.1} %)", interval.low, interval.high, interval.level * 100.0)
 }
 
-/// A value, its interval and the interval's confidence.
-pub(super) fn told(ratio: &Ratio, digits: usize) -> String {
-    format!("{:.digits$}, {}", ratio.value, with_level(&ratio.interval, digits))
-}
-
 /// The confidence of some intervals of medians, in words for a caption.
-pub(super) fn confidence(intervals: impl IntoIterator<Item = Interval>) -> String {
+fn confidence(intervals: impl IntoIterator<Item = Interval>) -> String {
     let mut levels: Vec<f64> = intervals.into_iter().map(|interval| at_least_percent(interval.level)).collect();
     levels.sort_by(f64::total_cmp);
     let levels = match levels.as_slice() {

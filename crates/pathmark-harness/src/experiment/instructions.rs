@@ -7,8 +7,8 @@
 use super::cell_process::{CellJob, PointJob};
 use super::time_limit::{Limits, timed_out};
 use super::{Cell, Progress, Sweep, baseline_folder, process_group};
-use crate::atomic_file;
-use crate::error::{Error, InputError, Result};
+use crate::csv_file;
+use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::env;
@@ -86,14 +86,8 @@ fn collected(said: &str) -> Option<u64> {
 
 /// Writes the counts of a sweep.
 fn write(path: &Path, counts: &BTreeMap<String, u64>) -> Result<()> {
-    let system = |e: std::io::Error| Error::system("writing", path, e);
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for (cell, instructions) in counts {
-        let row = Row { cell: cell.clone(), instructions: *instructions };
-        writer.serialize(row).map_err(|e| system(e.into()))?;
-    }
-    let bytes = writer.into_inner().map_err(|e| system(e.into_error()))?;
-    atomic_file::write(path, |file| file.write_all(&bytes))
+    let row = |(cell, instructions): (&String, &u64)| Row { cell: cell.clone(), instructions: *instructions };
+    csv_file::write(path, counts.iter().map(row))
 }
 
 /// Reads the counts beside a file of rows; empty if nothing was counted.
@@ -102,15 +96,8 @@ pub(super) fn read(rows: &Path) -> Result<BTreeMap<String, u64>> {
     if !path.is_file() {
         return Ok(BTreeMap::new());
     }
-    let mut reader = csv::Reader::from_path(&path).map_err(|e| Error::system("reading", &path, e.into()))?;
-    let row = |(index, row): (usize, csv::Result<Row>)| {
-        let row = row.map_err(|e| {
-            let error = InputError::new("row", "", format!("cannot be read: {e}"));
-            Error::from(error.in_file(path.display().to_string(), Some((index + 2, 1))))
-        })?;
-        Ok((row.cell, row.instructions))
-    };
-    reader.deserialize().enumerate().map(row).collect()
+    let rows = csv_file::read::<Row>(&path)?.into_iter();
+    Ok(rows.map(|row| (row.cell, row.instructions)).collect())
 }
 
 #[cfg(test)]

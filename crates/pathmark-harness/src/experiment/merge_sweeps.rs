@@ -11,6 +11,7 @@ use super::records_file::{RECORDS, read_records};
 use super::run_file::{MACHINE, RunFile, read_run_file};
 use super::sweep_shard::SweepShard;
 use crate::atomic_file;
+use crate::csv_file;
 use crate::digest;
 use crate::error::{Error, InputError, Result};
 use crate::measure::Record;
@@ -248,13 +249,7 @@ fn write(parts: &[Part], rows: &[Record], sweep: &MergedSweep, command: &str) ->
             copy_all(&references, &sweep.out.join("references"))?;
         }
     }
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let path = folder.join(RECORDS);
-    for row in rows {
-        writer.serialize(row).map_err(|e| Error::system("writing", &path, e.into()))?;
-    }
-    let bytes = writer.into_inner().map_err(|e| Error::system("writing", &path, e.into_error()))?;
-    atomic_file::write(&path, |file| file.write_all(&bytes))?;
+    csv_file::write(&folder.join(RECORDS), rows)?;
     let first = &parts[0];
     for file in ["experiment.toml", "calibration.csv"] {
         if first.folder.join(file).is_file() {

@@ -1,10 +1,10 @@
 //! Conditions on rows: columns of `records.csv` and the values required in them.
 
-use crate::error::{InputError, Result};
 use crate::measure::Record;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fmt;
+use std::ops::Deref;
 
 /// A row by its columns, as `records.csv` writes them.
 pub(super) type Columns = serde_json::Map<String, serde_json::Value>;
@@ -31,20 +31,41 @@ pub(super) fn number(row: &Columns, column: &str) -> Option<f64> {
     row.get(column)?.as_f64()
 }
 
-/// Refuses a column that `records.csv` does not have.
-pub(super) fn check_column(field: &str, column: &str) -> Result<()> {
-    let known = columns(&Record::default());
-    if known.contains_key(column) {
-        return Ok(());
+/// The name of a column of `records.csv`.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(try_from = "String")]
+pub(super) struct Column(String);
+
+impl TryFrom<String> for Column {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<Self, String> {
+        let known = columns(&Record::default());
+        if known.contains_key(&name) {
+            return Ok(Self(name));
+        }
+        let names: Vec<String> = known.keys().map(|known| format!("`{known}`")).collect();
+        Err(format!("there is no column `{name}` in records.csv, expected one of {}", names.join(", ")))
     }
-    let names: Vec<&str> = known.keys().map(String::as_str).collect();
-    Err(InputError::new(field, column, "is not a column of records.csv").allowed(names.join(", ")).into())
+}
+
+impl Deref for Column {
+    type Target = str;
+    fn deref(&self) -> &str {
+        &self.0
+    }
+}
+
+impl fmt::Display for Column {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
 }
 
 /// Conditions that all have to hold, by column.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(transparent)]
-pub(super) struct Conditions(BTreeMap<String, Wanted>);
+pub(super) struct Conditions(BTreeMap<Column, Wanted>);
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(untagged, expecting = "neither a value nor a list of values")]
@@ -99,11 +120,6 @@ impl Wanted {
 }
 
 impl Conditions {
-    /// Refuses columns that do not exist.
-    pub(super) fn check(&self, field: &str) -> Result<()> {
-        self.0.keys().try_for_each(|column| check_column(field, column))
-    }
-
     /// Whether a row meets all conditions.
     pub(super) fn admit(&self, row: &Columns) -> bool {
         self.0.iter().all(|(column, wanted)| wanted.values().iter().any(|value| value.admits(row, column)))
@@ -116,14 +132,14 @@ impl Conditions {
 
     /// The columns that the conditions name.
     pub(super) fn columns(&self) -> impl Iterator<Item = &str> {
-        self.0.keys().map(String::as_str)
+        self.0.keys().map(|column| &**column)
     }
 
     /// The conditions that a row does not meet: column, its value, the required value.
     pub(super) fn differences(&self, row: &Columns) -> Vec<(String, String, String)> {
-        let missed = |(column, wanted): (&String, &Wanted)| {
+        let missed = |(column, wanted): (&Column, &Wanted)| {
             let is_met = wanted.values().iter().any(|value| value.admits(row, column));
-            (!is_met).then(|| (column.clone(), text(row, column), wanted.to_string()))
+            (!is_met).then(|| (column.to_string(), text(row, column), wanted.to_string()))
         };
         self.0.iter().filter_map(missed).collect()
     }

@@ -49,7 +49,7 @@ pub struct Report {
 
 /// A claim as it is written; [`Claim::evidence`] says how it is judged.
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case")]
 pub struct Claim {
     /// Its number, from 1, unique over all reports.
     pub id: u32,
@@ -78,19 +78,9 @@ pub struct Claim {
     comparable_if: Conditions,
     #[serde(default)]
     a_fortiori: bool,
-    pub(super) experiment: Option<String>,
-    pub(super) rows: Option<Conditions>,
-    pub(super) over: Option<Conditions>,
-    pub(super) column: Option<String>,
-    pub(super) per: Option<String>,
-    pub(super) of: Option<String>,
-    pub(super) by: Option<String>,
-    pub(super) x: Option<String>,
-    pub(super) y: Option<String>,
-    pub(super) strategy: Option<String>,
-    pub(super) cores: Option<usize>,
-    pub(super) ids: Option<Vec<String>>,
-    pub(super) guard: Option<String>,
+    /// The fields of the statistic.
+    #[serde(flatten)]
+    fields: toml::Table,
     #[serde(skip)]
     test: Option<Test>,
 }
@@ -128,26 +118,6 @@ impl Claim {
         }
     }
 
-    /// The first field that the statistic did not take.
-    pub(super) fn unused_field(&self) -> Option<&'static str> {
-        let fields = [
-            ("experiment", self.experiment.is_some()),
-            ("rows", self.rows.is_some()),
-            ("over", self.over.is_some()),
-            ("column", self.column.is_some()),
-            ("per", self.per.is_some()),
-            ("of", self.of.is_some()),
-            ("by", self.by.is_some()),
-            ("x", self.x.is_some()),
-            ("y", self.y.is_some()),
-            ("strategy", self.strategy.is_some()),
-            ("cores", self.cores.is_some()),
-            ("ids", self.ids.is_some()),
-            ("guard", self.guard.is_some()),
-        ];
-        fields.into_iter().find(|(_, is_left)| *is_left).map(|(name, _)| name)
-    }
-
     /// The names of the expected verdicts.
     pub(super) fn expected_verdicts(&self) -> impl Iterator<Item = &str> {
         self.expected.split(" or ")
@@ -166,8 +136,12 @@ impl Claim {
                 .allowed(super::verdict::NAMES.join(", "))
                 .into());
         }
-        let Some(name) = self.statistic.take() else { return Ok(()) };
-        let statistic = Statistic::taken_from(self, &name)?;
+        let Some(name) = &self.statistic else {
+            let unknown =
+                |field: &String| InputError::new(field, "", "is no field of a claim without a statistic").into();
+            return self.fields.keys().next().map_or(Ok(()), |field| Err(unknown(field)));
+        };
+        let statistic = Statistic::of(name, &self.fields)?;
         let predicted = match (self.within, self.at_least, self.at_most) {
             (Some([low, high]), None, None) if low <= high => [low, high],
             (None, Some(low), None) => [low, f64::INFINITY],
@@ -188,7 +162,6 @@ impl Claim {
                 .into());
         }
         let comparable_if = std::mem::take(&mut self.comparable_if);
-        comparable_if.check("comparable-if")?;
         self.test = Some(Test { statistic, predicted, level, comparable_if, a_fortiori: self.a_fortiori });
         Ok(())
     }

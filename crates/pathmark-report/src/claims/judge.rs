@@ -2,8 +2,8 @@
 
 use super::condition::{Columns, Conditions};
 use super::definition::{Claim, Evidence as Kind, Report, Test};
-use super::measure::{Evidence, Found};
-use super::statistic::{GuardColumn, Statistic};
+use super::measure::{Evidence, Measurement};
+use super::statistic::{Cases, GuardColumn, GuardValue, Statistic};
 use super::verdict::Verdict;
 use crate::analysis::Interval;
 use crate::cases_file::{self, CaseRow};
@@ -28,7 +28,7 @@ pub struct Answer<'a> {
     pub why: String,
     /// The file that the values come from, within the folders that were read.
     pub source: Option<PathBuf>,
-    pub(super) found: Option<Found>,
+    pub(super) found: Option<Measurement>,
 }
 
 impl Answer<'_> {
@@ -102,10 +102,10 @@ impl<'a> Library<'a> {
                     }
                 }
             }
-            Statistic::Case { ids } => {
+            Statistic::Case(Cases { ids }) => {
                 (self.failed_cases(ids), self.out.join(cases_file::FOLDER).join(cases_file::FILE), Vec::new())
             }
-            Statistic::Guard { guard, column } => {
+            Statistic::Guard(GuardValue { guard, column }) => {
                 (self.price(guard, *column), self.out.join(guard_prices::FOLDER).join(guard_prices::FILE), Vec::new())
             }
         };
@@ -132,21 +132,21 @@ impl<'a> Library<'a> {
     }
 
     /// The number of these hard cases that failed, if all of them were tried.
-    fn failed_cases(&self, ids: &[String]) -> Option<Found> {
+    fn failed_cases(&self, ids: &[String]) -> Option<Measurement> {
         let tried = ids.iter().map(|id| self.cases.iter().find(|case| case.id == *id && case.trials > 0));
         let tried = tried.collect::<Option<Vec<&CaseRow>>>()?;
         let failed = tried.iter().filter(|case| !case.pass).count() as f64;
-        Some(Found { value: failed, interval: Interval::between(failed, failed, 1.0), count: tried.len() })
+        Some(Measurement { value: failed, interval: Interval::between(failed, failed, 1.0), count: tried.len() })
     }
 
-    fn price(&self, guard: &str, column: GuardColumn) -> Option<Found> {
+    fn price(&self, guard: &str, column: GuardColumn) -> Option<Measurement> {
         let row = self.prices.iter().find(|row| row.guard == guard)?;
         let (value, low, high) = match column {
             GuardColumn::ErrorWith => (row.error_with, row.error_with_low, row.error_with_high),
             GuardColumn::ErrorWithout => (row.error_without, row.error_without_low, row.error_without_high),
             GuardColumn::TimeRatio => (row.time_ratio?, row.time_ratio_low?, row.time_ratio_high?),
         };
-        Some(Found { value, interval: Interval::between(low, high, guard_prices::LEVEL), count: 1 })
+        Some(Measurement { value, interval: Interval::between(low, high, guard_prices::LEVEL), count: 1 })
     }
 }
 

@@ -24,13 +24,13 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// A value, its interval if there were enough values for one, and the number of values that the interval is computed from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Found {
+pub(super) struct Measurement {
     pub(super) value: f64,
     pub(super) interval: Option<Interval>,
     pub(super) count: usize,
 }
 
-impl Found {
+impl Measurement {
     fn estimate(estimate: Option<Estimate>, count: usize) -> Option<Self> {
         let Estimate { value, interval } = estimate?;
         Some(Self { value, interval: Some(interval), count })
@@ -84,7 +84,7 @@ impl Evidence {
     }
 
     /// The statistic of the rows that meet the conditions; `None` if there are no such rows, or too few to compute it.
-    pub(super) fn measure(&self, conditions: &Conditions, kind: &Kind, level: f64) -> Result<Option<Found>> {
+    pub(super) fn measure(&self, conditions: &Conditions, kind: &Kind, level: f64) -> Result<Option<Measurement>> {
         let (rows, stopping) = (self.rows(conditions), self.results.stopping());
         let of = |column: &str| -> Vec<f64> { rows.iter().filter_map(|(_, row)| number(row, column)).collect() };
         let per = |above: &str, below: &str| -> Vec<f64> {
@@ -93,34 +93,37 @@ impl Evidence {
             rows.iter().filter_map(|(_, row)| ratio(row)).collect()
         };
         Ok(match kind {
-            Kind::Value { column, per: None } => Found::typical(&of(column), stopping, level, t_interval),
+            Kind::Value { column, per: None } => Measurement::typical(&of(column), stopping, level, t_interval),
             Kind::Value { column, per: Some(below) } => {
-                Found::typical(&per(column, below), stopping, level, t_interval)
+                Measurement::typical(&per(column, below), stopping, level, t_interval)
             }
             Kind::Share { column, of } => share(&per(column, of), level),
-            Kind::Count { column } => Found::exact(of(column).iter().sum(), of(column).len()),
-            Kind::PairedRatio { column, over } => {
-                Found::typical(&self.ratios(&rows, conditions, over, column)?, stopping, level, geometric_interval)
-            }
+            Kind::Count { column } => Measurement::exact(of(column).iter().sum(), of(column).len()),
+            Kind::PairedRatio { column, over } => Measurement::typical(
+                &self.ratios(&rows, conditions, over, column)?,
+                stopping,
+                level,
+                geometric_interval,
+            ),
             Kind::Speedup { over } => {
                 let ratios = self.ratios(&rows, conditions, over, "makespan_s")?;
                 let speedups: Vec<f64> = ratios.iter().map(|ratio| 1.0 / ratio).collect();
-                Found::typical(&speedups, stopping, level, geometric_interval)
+                Measurement::typical(&speedups, stopping, level, geometric_interval)
             }
             Kind::Exponent { x, y } => {
                 let points = rows.iter().filter_map(|(_, row)| Some((number(row, x)?, number(row, y)?)));
                 let points: Vec<(f64, f64)> = points.collect();
-                Found::estimate(log_log(&points, level).map(|line| line.slope), points.len())
+                Measurement::estimate(log_log(&points, level).map(|line| line.slope), points.len())
             }
-            Kind::RmseSlope => {
+            Kind::RmseSlope {} => {
                 let own: Vec<&Row> = rows.iter().map(|(row, _)| *row).collect();
                 let curves: Vec<_> = curves_of_seeds(&own).into_iter().map(|(curve, _)| curve).collect();
                 let law = SeedCurves::of_errors(&curves).and_then(|curves| power_law(&curves, level));
-                Found::estimate(law.map(|law| law.exponent), curves.len())
+                Measurement::estimate(law.map(|law| law.exponent), curves.len())
             }
             Kind::Z { column, over } => z(&rows, &self.rows(over), column, level),
             Kind::RankCorrelation { x, y, by } => rank_correlation(&rows, [x, y], by, level),
-            Kind::Checksum => checksums(&rows),
+            Kind::Checksum {} => checksums(&rows),
             Kind::Forecast { strategy, cores, column } => self.forecast(&rows, (strategy, *cores), *column, level)?,
         })
     }
@@ -154,7 +157,7 @@ impl Evidence {
         (strategy, cores): (&str, usize),
         column: ForecastColumn,
         level: f64,
-    ) -> Result<Option<Found>> {
+    ) -> Result<Option<Measurement>> {
         let path = self.results.folder.join("calibration.csv");
         if !path.is_file() {
             return Ok(None);
@@ -173,23 +176,23 @@ impl Evidence {
                 });
             }
         }
-        Ok(Found::typical(&values, self.results.stopping(), level, t_interval))
+        Ok(Measurement::typical(&values, self.results.stopping(), level, t_interval))
     }
 }
 
 /// The mean of some shares; if all are equal, that share exactly.
-fn share(shares: &[f64], level: f64) -> Option<Found> {
+fn share(shares: &[f64], level: f64) -> Option<Measurement> {
     let first = *shares.first()?;
     if shares.len() > 1 && shares.iter().all(|share| *share == first) {
-        return Found::exact(first, shares.len());
+        return Measurement::exact(first, shares.len());
     }
     let mean = shares.iter().sum::<f64>() / shares.len() as f64;
     let interval = t_interval(shares, level).map(|estimate| estimate.interval);
-    Some(Found { value: mean, interval, count: shares.len() })
+    Some(Measurement { value: mean, interval, count: shares.len() })
 }
 
 /// The difference of two means over seeds in standard errors, plus or minus the normal quantile of the level.
-fn z(rows: &[Pair<'_>], over: &[Pair<'_>], column: &str, level: f64) -> Option<Found> {
+fn z(rows: &[Pair<'_>], over: &[Pair<'_>], column: &str, level: f64) -> Option<Measurement> {
     let moments = |pairs: &[Pair<'_>]| {
         let own: Vec<&Row> = pairs.iter().map(|(row, _)| *row).collect();
         let by_row: HashMap<*const Row, f64> = pairs
@@ -201,12 +204,12 @@ fn z(rows: &[Pair<'_>], over: &[Pair<'_>], column: &str, level: f64) -> Option<F
     let (a, b) = (moments(rows), moments(over));
     let score = z_score(a.mean()?, a.standard_error()?, b.mean()?, b.standard_error()?)?;
     let interval = Interval::around(score, critical_value(1.0 - level)?, level);
-    Some(Found { value: score, interval, count: (a.count() + b.count()) as usize })
+    Some(Measurement { value: score, interval, count: (a.count() + b.count()) as usize })
 }
 
 /// Spearman's coefficient over the means of groups, with Fisher's interval. The variance for ranks is from E. C.
 /// Fieller, H. O. Hartley and E. S. Pearson, "Tests for rank correlation coefficients", Biometrika 44 (1957).
-fn rank_correlation(rows: &[Pair<'_>], [x, y]: [&str; 2], by: &str, level: f64) -> Option<Found> {
+fn rank_correlation(rows: &[Pair<'_>], [x, y]: [&str; 2], by: &str, level: f64) -> Option<Measurement> {
     let mut groups: BTreeMap<String, Vec<(f64, f64)>> = BTreeMap::new();
     for (_, row) in rows {
         if let Some(pair) = number(row, x).zip(number(row, y)) {
@@ -224,11 +227,11 @@ fn rank_correlation(rows: &[Pair<'_>], [x, y]: [&str; 2], by: &str, level: f64) 
     // A perfect order has an infinite transform, so rho is clamped.
     let centre = libm::atanh(rho.clamp(-0.999_999, 0.999_999));
     let interval = Interval::between(libm::tanh(centre - half), libm::tanh(centre + half), level);
-    Some(Found { value: rho, interval, count: points.len() })
+    Some(Measurement { value: rho, interval, count: points.len() })
 }
 
 /// The largest number of different checksums of one image; `None` if no image has two rows.
-fn checksums(rows: &[Pair<'_>]) -> Option<Found> {
+fn checksums(rows: &[Pair<'_>]) -> Option<Measurement> {
     let mut images: BTreeMap<_, Vec<&str>> = BTreeMap::new();
     // A sampler that draws other random numbers in each run leaves no checksum.
     for (row, _) in rows.iter().filter(|(row, _)| !row.checksum.is_empty()) {
@@ -236,5 +239,5 @@ fn checksums(rows: &[Pair<'_>]) -> Option<Found> {
     }
     let compared: Vec<&Vec<&str>> = images.values().filter(|checksums| checksums.len() > 1).collect();
     let most = compared.iter().map(|sums| sums.iter().collect::<BTreeSet<_>>().len()).max()?;
-    Found::exact(most as f64, compared.iter().map(|sums| sums.len()).sum())
+    Measurement::exact(most as f64, compared.iter().map(|sums| sums.len()).sum())
 }

@@ -24,7 +24,6 @@ use super::page::Section;
 use crate::error::Result;
 use crate::files::Files;
 use crate::lab::Lab;
-use crate::measure::{Doubts, LeftOut};
 use listing::{CSV, is_csv};
 use std::path::Path;
 use std::sync::Arc;
@@ -54,15 +53,9 @@ pub(super) fn section(lab: &Arc<Lab>, out: &Path) -> Result<Option<Section>> {
         title: "What the reports said".to_string(),
         question: QUESTION.to_string(),
         analysis: ANALYSIS.to_string(),
-        chapter: None,
-        place: 0,
         in_short: Some(listing::in_short(&answers)),
-        again: None,
-        failed: Vec::new(),
-        left_out: LeftOut::default(),
-        doubts: Doubts::default(),
         rows: answered,
-        run: None,
         blocks: listing::blocks(&answers),
+        ..Section::default()
     }))
 }

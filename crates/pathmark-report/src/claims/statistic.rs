@@ -1,161 +1,141 @@
 //! Statistics that a claim may ask for: a closed list.
 
-use super::condition::{Conditions, check_column};
-use super::definition::Claim;
+use super::condition::{Column, Conditions};
 use crate::error::{InputError, Result};
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use std::fmt;
+use toml::{Table, Value};
 
 /// A number that is computed from results.
 #[derive(Debug)]
 pub(super) enum Statistic {
     /// A statistic of the rows of an experiment.
     OfRows { experiment: String, rows: Conditions, kind: Kind },
-    /// The number of these hard cases that failed.
-    Case { ids: Vec<String> },
+    /// The number of some hard cases that failed.
+    Case(Cases),
     /// A value in the price list of the guards.
-    Guard { guard: String, column: GuardColumn },
+    Guard(GuardValue),
 }
 
-/// A number that is computed from rows.
-#[derive(Debug)]
+/// A number that is computed from rows, as a claim writes it.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub(super) enum Kind {
     /// The median of a column, or of one column divided by another.
-    Value { column: String, per: Option<String> },
+    Value { column: Column, per: Option<Column> },
     /// The mean over rows of a column's share of another.
-    Share { column: String, of: String },
+    Share { column: Column, of: Column },
     /// The sum of a column.
-    Count { column: String },
+    Count { column: Column },
     /// The median ratio of a column between paired rows.
-    PairedRatio { column: String, over: Conditions },
+    PairedRatio { column: Column, over: Conditions },
     /// The median of the baseline's time over the rows' own, in pairs.
     Speedup { over: Conditions },
     /// The slope of log y against log x.
-    Exponent { x: String, y: String },
+    Exponent { x: Column, y: Column },
     /// The slope of log RMSE against log spp, with an interval over seeds.
-    RmseSlope,
+    RmseSlope {},
     /// The difference of two means over seeds, in standard errors.
-    Z { column: String, over: Conditions },
+    Z { column: Column, over: Conditions },
     /// Spearman's rank correlation of two columns, each averaged within groups.
-    RankCorrelation { x: String, y: String, by: String },
+    RankCorrelation { x: Column, y: Column, by: Column },
     /// The largest number of different checksums of one image.
-    Checksum,
+    Checksum {},
     /// A simulated schedule on many cores.
     Forecast { strategy: String, cores: usize, column: ForecastColumn },
 }
 
 /// A column of a forecast.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub(super) enum ForecastColumn {
     Speedup,
     Efficiency,
     SerialFraction,
 }
 
+/// Hard cases by their names.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Cases {
+    pub(super) ids: Vec<String>,
+}
+
+/// A column of a guard's row.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GuardValue {
+    pub(super) guard: String,
+    pub(super) column: GuardColumn,
+}
+
 /// A column of the price list.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub(super) enum GuardColumn {
     ErrorWith,
     ErrorWithout,
     TimeRatio,
 }
 
-/// The names of all statistics, as claims write them.
-const NAMES: [&str; 13] = [
-    "value",
-    "share",
-    "count",
-    "paired-ratio",
-    "speedup",
-    "exponent",
-    "rmse-slope",
-    "z",
-    "rank-correlation",
-    "checksum",
-    "forecast",
-    "case",
-    "guard",
-];
+/// The fields of every statistic of rows, and those of its kind.
+#[derive(Deserialize)]
+struct OfRows {
+    experiment: String,
+    #[serde(default)]
+    rows: Conditions,
+    #[serde(flatten)]
+    fields: Table,
+}
+
+/// The names of the statistics that are not of rows.
+const OTHERS: [&str; 2] = ["case", "guard"];
 
 impl Statistic {
-    /// Builds the statistic of that name from the claim's fields. Refuses a claim with fields that the statistic does
-    /// not use.
-    pub(super) fn taken_from(claim: &mut Claim, name: &str) -> Result<Self> {
-        let needs = Needs { name, id: claim.id };
-        let statistic = match name {
-            "case" => Self::Case { ids: some_cases(needs.field("ids", claim.ids.take())?)? },
-            "guard" => Self::Guard {
-                guard: needs.field("guard", claim.guard.take())?,
-                column: needs.one_of(claim.column.take(), &GUARD_COLUMNS)?,
-            },
-            _ => {
-                let kind = Kind::taken_from(claim, name, &needs)?;
-                let experiment = needs.field("experiment", claim.experiment.take())?;
-                let rows = claim.rows.take().unwrap_or_default();
-                rows.check("rows")?;
-                Self::OfRows { experiment, rows, kind }
+    /// The statistic of that name with these fields.
+    pub(super) fn of(name: &str, fields: &Table) -> Result<Self> {
+        let [case, guard] = OTHERS;
+        if name == case {
+            let cases: Cases = read(name, fields)?;
+            if cases.ids.is_empty() {
+                return Err(InputError::new("ids", "", "names no hard case")
+                    .allowed("names of `pathmark selftest`")
+                    .into());
             }
-        };
-        match claim.unused_field() {
-            None => Ok(statistic),
-            Some(field) => {
-                Err(InputError::new("statistic", name, format!("has no use for the claim's field `{field}`")).into())
-            }
+            return Ok(Self::Case(cases));
         }
+        if name == guard {
+            return Ok(Self::Guard(read(name, fields)?));
+        }
+        let OfRows { experiment, rows, fields } = read(name, fields)?;
+        // The name is a key here: with a tag among the fields, serde would not tell the key of a wrong value.
+        let kind = read(name, &Table::from_iter([(name.to_string(), Value::Table(fields))]))?;
+        Ok(Self::OfRows { experiment, rows, kind })
     }
 }
 
-impl Kind {
-    fn taken_from(claim: &mut Claim, name: &str, needs: &Needs<'_>) -> Result<Self> {
-        Ok(match name {
-            "value" => Self::Value {
-                column: needs.column("column", claim.column.take())?,
-                per: claim.per.take().map(|per| needs.column("per", Some(per))).transpose()?,
-            },
-            "share" => Self::Share {
-                column: needs.column("column", claim.column.take())?,
-                of: needs.column("of", claim.of.take())?,
-            },
-            "count" => Self::Count { column: needs.column("column", claim.column.take())? },
-            "paired-ratio" => Self::PairedRatio {
-                column: needs.column("column", claim.column.take())?,
-                over: needs.conditions(claim.over.take())?,
-            },
-            "speedup" => Self::Speedup { over: needs.conditions(claim.over.take())? },
-            "exponent" => {
-                Self::Exponent { x: needs.column("x", claim.x.take())?, y: needs.column("y", claim.y.take())? }
-            }
-            "rmse-slope" => Self::RmseSlope,
-            "z" => Self::Z {
-                column: needs.column("column", claim.column.take())?,
-                over: needs.conditions(claim.over.take())?,
-            },
-            "rank-correlation" => Self::RankCorrelation {
-                x: needs.column("x", claim.x.take())?,
-                y: needs.column("y", claim.y.take())?,
-                by: needs.column("by", claim.by.take())?,
-            },
-            "checksum" => Self::Checksum,
-            "forecast" => Self::Forecast {
-                strategy: needs.field("strategy", claim.strategy.take())?,
-                cores: needs.field("cores", claim.cores.take())?,
-                column: needs.one_of(claim.column.take(), &FORECAST_COLUMNS)?,
-            },
-            _ => return Err(InputError::new("statistic", name, "is not a statistic").allowed(NAMES.join(", ")).into()),
-        })
-    }
+/// Reads a table of a claim. An error is about the field that serde names, or else about the statistic.
+fn read<T: DeserializeOwned>(statistic: &str, table: &Table) -> Result<T> {
+    table.clone().try_into().map_err(|error: toml::de::Error| {
+        let said = error.to_string();
+        let (problem, path) = said.split_once("\nin `").unwrap_or((&said, ""));
+        let (problem, allowed) = problem.trim().split_once(", expected one of ").unwrap_or((problem.trim(), ""));
+        let own = table.get(statistic).and_then(Value::as_table).unwrap_or(table);
+        let field = path.trim_end().trim_end_matches('`').split('.').find_map(|key| own.get_key_value(key));
+        let allowed = match field {
+            None if problem.starts_with("unknown variant") => format!("{allowed}, {}", OTHERS.join(", ")),
+            _ => allowed.to_string(),
+        };
+        let (field, value) = field.map_or(("statistic", statistic.to_string()), |(key, value)| (key, shown(value)));
+        InputError::new(field, value, problem).allowed(allowed.replace('`', "")).into()
+    })
 }
 
-const FORECAST_COLUMNS: [(&str, ForecastColumn); 3] = [
-    ("speedup", ForecastColumn::Speedup),
-    ("efficiency", ForecastColumn::Efficiency),
-    ("serial-fraction", ForecastColumn::SerialFraction),
-];
-
-const GUARD_COLUMNS: [(&str, GuardColumn); 3] = [
-    ("error_with", GuardColumn::ErrorWith),
-    ("error_without", GuardColumn::ErrorWithout),
-    ("time_ratio", GuardColumn::TimeRatio),
-];
+/// A value as a claim writes it, a text without its quotes.
+fn shown(value: &Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_string)
+}
 
 impl GuardColumn {
     fn name(self) -> &'static str {
@@ -171,8 +151,8 @@ impl GuardColumn {
 impl fmt::Display for Statistic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Case { ids } => write!(f, "failed among the hard cases {}", ids.join(", ")),
-            Self::Guard { guard, column } => write!(f, "{} of the guard \"{guard}\"", column.name()),
+            Self::Case(Cases { ids }) => write!(f, "failed among the hard cases {}", ids.join(", ")),
+            Self::Guard(GuardValue { guard, column }) => write!(f, "{} of the guard \"{guard}\"", column.name()),
             Self::OfRows { experiment, rows, kind } if rows.is_empty() => write!(f, "{kind}; all rows of {experiment}"),
             Self::OfRows { experiment, rows, kind } => write!(f, "{kind}; rows of {experiment} where {rows}"),
         }
@@ -189,10 +169,10 @@ impl fmt::Display for Kind {
             Self::PairedRatio { column, over } => write!(f, "median ratio of {column} to that of rows where {over}"),
             Self::Speedup { over } => write!(f, "median speedup against rows where {over}"),
             Self::Exponent { x, y } => write!(f, "exponent of {y} against {x}"),
-            Self::RmseSlope => f.write_str("exponent of rmse against spp"),
+            Self::RmseSlope {} => f.write_str("exponent of rmse against spp"),
             Self::Z { column, over } => write!(f, "z of mean {column} against rows where {over}"),
             Self::RankCorrelation { x, y, by } => write!(f, "rank correlation of {y} with {x} by {by}"),
-            Self::Checksum => f.write_str("largest number of checksums of one image"),
+            Self::Checksum {} => f.write_str("largest number of checksums of one image"),
             Self::Forecast { strategy, cores, column } => {
                 write!(f, "simulated {} of {strategy} on {cores} cores", column.name())
             }
@@ -208,49 +188,4 @@ impl ForecastColumn {
             Self::SerialFraction => "serial fraction",
         }
     }
-}
-
-/// The name of a statistic and its claim, to take the required fields.
-struct Needs<'a> {
-    name: &'a str,
-    id: u32,
-}
-
-impl Needs<'_> {
-    fn field<T>(&self, field: &str, value: Option<T>) -> Result<T> {
-        value.ok_or_else(|| {
-            InputError::new("statistic", self.name, format!("needs the field `{field}`, which claim {} lacks", self.id))
-                .into()
-        })
-    }
-
-    fn column(&self, field: &str, value: Option<String>) -> Result<String> {
-        let column = self.field(field, value)?;
-        check_column(field, &column)?;
-        Ok(column)
-    }
-
-    fn conditions(&self, value: Option<Conditions>) -> Result<Conditions> {
-        let conditions = self.field("over", value)?;
-        conditions.check("over")?;
-        Ok(conditions)
-    }
-
-    fn one_of<T: Copy>(&self, value: Option<String>, table: &[(&str, T)]) -> Result<T> {
-        let name = self.field("column", value)?;
-        let found = table.iter().find(|(known, _)| *known == name).map(|(_, value)| *value);
-        found.ok_or_else(|| {
-            let names: Vec<&str> = table.iter().map(|(name, _)| *name).collect();
-            InputError::new("column", &name, format!("is not a column of a {}", self.name))
-                .allowed(names.join(", "))
-                .into()
-        })
-    }
-}
-
-fn some_cases(ids: Vec<String>) -> Result<Vec<String>> {
-    if ids.is_empty() {
-        return Err(InputError::new("ids", "", "names no hard case").allowed("names of `pathmark selftest`").into());
-    }
-    Ok(ids)
 }

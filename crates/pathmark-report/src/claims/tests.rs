@@ -1,6 +1,6 @@
 use super::condition::{Columns, columns};
 use super::definition::{Evidence, Test};
-use super::measure::Found;
+use super::measure::Measurement;
 use super::statistic::{Kind, Statistic};
 use super::*;
 use crate::error::Error;
@@ -18,7 +18,7 @@ fn claim(evidence: &str) -> String {
 }
 
 /// The answer of these rows to a claim about `an-experiment`: the verdict, the reason for it, and the measured value.
-fn answer(rows: &[Record], evidence: &str) -> (Verdict, String, Option<Found>) {
+fn answer(rows: &[Record], evidence: &str) -> (Verdict, String, Option<Measurement>) {
     let out = folder_of(&[], "", rows.to_vec());
     let text = claim(&format!("experiment = \"an-experiment\"\nlevel = 0.95\n{evidence}"));
     let reports = [Report::from_text("X.toml", &text).unwrap()];
@@ -248,6 +248,23 @@ fn everything_a_claim_asks_for_exists() {
         (format!("statistic = \"checksum\"\nwithin = [1, 2]\n{rows}"), vec!["X.toml:5", "at-most"]),
         (format!("statistic = \"checksum\"\n{}", rows.replace("scene", "szene")), vec!["szene", "scene_hash"]),
         ("statistic = \"case\"\nids = []\nlevel = 0.95\nat-most = 0.0".to_string(), vec!["X.toml:12", "hard case"]),
+        (
+            format!("statistic = \"forecast\"\nstrategy = \"s\"\ncores = \"many\"\ncolumn = \"speedup\"\n{rows}"),
+            vec!["X.toml:13", "cores", "many"],
+        ),
+        (format!("statistic = \"z\"\nover = {{ colour = 1 }}\n{rows}"), vec!["X.toml:12", "over", "colour", "spp"]),
+        (
+            format!("statistic = \"count\"\ncolumn = \"spp\"\nrows = 3\n{}", rows.replace("rows", "over")),
+            vec!["X.toml:13", "rows", "3"],
+        ),
+        (
+            "statistic = \"case\"\nids = [\"a\"]\nexperiment = \"e\"\nat-most = 0.0".to_string(),
+            vec!["X.toml:11", "`experiment`"],
+        ),
+        (
+            "statistic = \"guard\"\nguard = \"g\"\ncolumn = \"price\"".to_string(),
+            vec!["X.toml:13", "price", "time_ratio"],
+        ),
         (String::new(), vec!["X.toml:5", "context"]),
         (format!("statistic = \"checksum\"\n{rows}\ncontext = \"c\""), vec!["X.toml:5", "missing"]),
         ("context = \"c\"\nexpectd = 1".to_string(), vec!["X.toml:12", "expectd"]),

@@ -1,6 +1,6 @@
 //! Verdicts: the comparison of a measured interval with the prediction of a claim.
 
-use super::measure::Found;
+use super::measure::Measurement;
 use std::fmt;
 
 /// The names of all verdicts.
@@ -45,7 +45,7 @@ impl Verdict {
     }
 
     /// Compares a measurement with the ends of the prediction.
-    pub(super) fn of(found: &Found, [low, high]: [f64; 2]) -> Self {
+    pub(super) fn of(found: &Measurement, [low, high]: [f64; 2]) -> Self {
         match found.interval {
             Some(interval) if low <= interval.low && interval.high <= high => Self::Confirmed,
             Some(interval) if interval.high < low || high < interval.low => Self::Refuted,
@@ -67,7 +67,7 @@ mod tests {
 
     fn of(low: f64, high: f64, predicted: [f64; 2]) -> Verdict {
         let interval = Interval::between(low, high, 0.95);
-        Verdict::of(&Found { value: 0.5 * (low + high), interval, count: 9 }, predicted)
+        Verdict::of(&Measurement { value: 0.5 * (low + high), interval, count: 9 }, predicted)
     }
 
     #[test]
@@ -91,6 +91,6 @@ mod tests {
 
     #[test]
     fn a_single_value_decides_nothing() {
-        assert_eq!(Verdict::of(&Found { value: 1.0, interval: None, count: 1 }, [0.9, 1.1]), Verdict::Open);
+        assert_eq!(Verdict::of(&Measurement { value: 1.0, interval: None, count: 1 }, [0.9, 1.1]), Verdict::Open);
     }
 }

@@ -69,8 +69,6 @@ fn against_primitives(results: &Results, sizes: &Places<'_>, accelerators: &[(us
         by_name.iter().map(cell)
     });
     let times = along(cells, |(_, name)| name.clone(), results.stopping());
-    let intervals = times.iter().filter_map(|(_, time)| time.interval);
-    let hollow = hollow(times.iter().map(|(_, time)| *time));
     let series = accelerators.iter().map(|(place, name)| {
         let own = times.iter().filter(|((_, of), _)| of == name);
         Series::new(*name, Look::nth(*place), own.map(|((count, _), time)| time.above(*count as f64)).collect())
@@ -78,8 +76,8 @@ fn against_primitives(results: &Results, sizes: &Places<'_>, accelerators: &[(us
     let (x, y) = (Axis::log("spheres"), Axis::log("nanoseconds per ray"));
     let mut chart = LineChart::new("Time per ray against the number of spheres", x, y, series.collect());
     chart.subtitle = format!("balls filling the same share of a cube, {}", results.machine_line());
-    let bars = confidence(intervals);
-    chart.caption = format!("Median of repetitions of {}, shading and all. Bars: {bars}.{hollow}", first.estimator);
+    let bars = bars(times.iter().map(|(_, time)| *time));
+    chart.caption = format!("Median of repetitions of {}, shading and all. {bars}", first.estimator);
     Some(Block::figure("acceleration", chart))
 }
 
@@ -128,7 +126,7 @@ fn against_spp(results: &Results, samples: &Places<'_>, gains: &[(usize, &str, G
     if gains.iter().all(|(.., gains)| gains.is_empty()) {
         return Vec::new();
     }
-    let point = |(spp, gain): &(u64, Ratio)| Told::from(*gain).above(*spp as f64);
+    let point = |(spp, gain): &(u64, Ratio)| Estimated::from(*gain).above(*spp as f64);
     let series = gains
         .iter()
         .map(|(place, name, gains)| Series::new(*name, Look::nth(*place), gains.iter().map(point).collect()));
@@ -141,9 +139,7 @@ fn against_spp(results: &Results, samples: &Places<'_>, gains: &[(usize, &str, G
     let first = samples.values().flat_map(BTreeMap::values).flatten().next();
     let image = first.map_or_else(String::new, |row| format!("{}, {}x{}, ", row.scene, row.width, row.height));
     chart.subtitle = format!("{image}{}", results.machine_line());
-    let intervals = gains.iter().flat_map(|(.., gains)| gains).map(|(_, gain)| gain.interval);
-    let hollow = hollow(gains.iter().flat_map(|(.., gains)| gains).map(|(_, gain)| Told::from(*gain)));
-    chart.caption = format!("Median of ratios within a repetition. Bars: {}.{hollow}", confidence(intervals));
+    chart.caption = ratio_bars(gains.iter().flat_map(|(.., gains)| gains).map(|(_, gain)| *gain));
     chart.dodge = 4.0;
     let finding = |(_, name, gains): &(usize, &str, Gains)| {
         let gains: Vec<_> = gains.iter().filter(|(_, gain)| !gain.is_partial).collect();
@@ -195,17 +191,16 @@ fn marginal(rows: &[&Row], yardstick: &str, name: &str, stopping: Stopping) -> R
 fn table(results: &Results, accelerators: &[(usize, &str)]) -> Block {
     let place = |name: &str| accelerators.iter().position(|(_, own)| *own == name);
     let kinds = results.by(|row| (primitives(row), &row.scene, place(&row.accelerator))).into_values();
-    let typical = |rows: &[&Row], value: &dyn Fn(&Row) -> Option<f64>| typical(rows.iter().copied(), value);
     Block::table("acceleration-table", "What rays are tested against: medians over repetitions", kinds)
         .column("scene", |rows| rows[0].scene.clone())
         .column("accelerator", |rows| rows[0].accelerator.clone())
-        .number("ns per ray", Decimals(0), |rows| typical(rows, &ns_per_ray))
+        .number("ns per ray", Decimals(0), |rows| typical(rows, ns_per_ray))
         .number("boxes per ray", Decimals(1), |rows| {
-            typical(rows, &|row| Some(row.box_tests? as f64 / row.rays? as f64))
+            typical(rows, |row| Some(row.box_tests? as f64 / row.rays? as f64))
         })
         .number("primitives per ray", Decimals(1), |rows| {
-            typical(rows, &|row| Some(row.primitive_tests? as f64 / row.rays? as f64))
+            typical(rows, |row| Some(row.primitive_tests? as f64 / row.rays? as f64))
         })
-        .number("ms to build", Decimals(3), |rows| typical(rows, &|row| Some(row.build_s? * 1e3)))
+        .number("ms to build", Decimals(3), |rows| typical(rows, |row| Some(row.build_s? * 1e3)))
         .end()
 }

@@ -36,24 +36,18 @@ fn told_kind((schedule, effects): Kind<'_>) -> String {
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let kinds: BTreeMap<Kind<'_>, Vec<&Row>> = results.by(|row| (&row.schedule, row.effects.as_str()));
     let (alone, several): (Vec<_>, Vec<_>) = kinds.iter().partition(|((schedule, _), _)| schedule.key.threads == 1);
-    let mut cells = Vec::new();
-    for (own, rows) in several {
-        for (baseline, base_rows) in &alone {
-            let (base, own_rows) = (base_rows.iter().copied(), rows.iter().copied());
-            cells.push(((*own, **baseline), ratios(base, own_rows, any_schedule, |row| row.makespan_s)?));
-        }
-    }
-    let all = estimates(cells, results.stopping()).into_iter();
+    let cells = several.into_iter().flat_map(|(own, rows)| {
+        alone.iter().map(move |(baseline, base)| ((*own, **baseline), base.as_slice(), rows.as_slice()))
+    });
+    let all = time_ratios(cells, any_schedule, results.stopping())?.into_iter();
     let mut all: Vec<Against<'_>> = all.map(|((own, baseline), speedup)| Against { own, baseline, speedup }).collect();
     all.sort_by(|a, b| a.speedup.falling(&b.speedup));
-    let dots = all.iter().map(|a| PlotRow::new(a.name(), vec![Some(Told::from(a.speedup).dot())])).collect();
+    let dots = all.iter().map(|a| DotRow::new(a.name(), vec![Some(Estimated::from(a.speedup).dot())])).collect();
     let mut plot =
         DotPlot::new("One schedule against several baselines", Axis::linear("speedup").including([1.0, 2.1]), dots);
     plot.guides = all.iter().map(Against::workers).collect::<BTreeSet<_>>().into_iter().map(guide).collect();
     plot.subtitle = results.workload();
-    let intervals = all.iter().map(|against| against.speedup.interval);
-    let hollow = hollow(all.iter().map(|against| Told::from(against.speedup)));
-    plot.caption = format!("Median of ratios within a repetition. Bars: {}.{hollow}", confidence(intervals));
+    plot.caption = ratio_bars(all.iter().map(|against| against.speedup));
     let mut blocks = vec![Block::figure("baselines", plot)];
     blocks.extend(finding(&all));
     blocks.push(table(&all));
@@ -82,13 +76,14 @@ fn finding(all: &[Against<'_>]) -> Option<Block> {
 }
 
 fn table(all: &[Against<'_>]) -> Block {
-    let fraction =
-        |against: &&Against<'_>| serial_fraction_within(&against.speedup.estimate(), against.workers()).map(Told::from);
+    let fraction = |against: &&Against<'_>| {
+        serial_fraction_within(&against.speedup.estimate(), against.workers()).map(Estimated::from)
+    };
     Block::table("baselines", "Speedup and Karp-Flatt fraction by baseline", all)
         .column("schedule", |against| told_kind(against.own))
         .column("baseline", |against| told_kind(against.baseline))
-        .told("speedup", Decimals(3), |against| Told::from(against.speedup))
-        .told("e", Decimals(3), fraction)
+        .estimated("speedup", Decimals(3), |against| Estimated::from(against.speedup))
+        .estimated("e", Decimals(3), fraction)
         .column("remark", |against| if against.is_superlinear() { "superlinear".into() } else { String::new() })
         .end()
 }

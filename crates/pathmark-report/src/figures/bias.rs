@@ -53,7 +53,7 @@ struct Cost {
     value: String,
     spp: u32,
     /// Mean radiance over the usual value's, paired by seed.
-    light: Told,
+    light: Estimated,
     rmse: Option<f64>,
     within: Option<f64>,
     black: Option<f64>,
@@ -85,7 +85,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             let own = costs.iter().find(is_shown)?;
             Some(own.light.times(100.0).dot())
         };
-        PlotRow::new(value, scenes.iter().map(dot).collect())
+        DotRow::new(value, scenes.iter().map(dot).collect())
     };
     let mut plot = DotPlot::new(
         format!("Light by {}", axis.name()),
@@ -123,7 +123,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("scene", |cost| cost.scene.clone())
         .column(axis.name(), |cost| cost.value.clone())
         .column("spp", |cost| cost.spp.to_string())
-        .told("light, %", Decimals(3), |cost| cost.light.times(100.0))
+        .estimated("light, %", Decimals(3), |cost| cost.light.times(100.0))
         .number("RMSE", Decimals(5), |cost| cost.rmse)
         .number("pixels within 0.05 of the display, %", Decimals(2), |cost| percent(cost.within))
         .number("black pixels, %", Decimals(3), |cost| percent(cost.black))
@@ -157,14 +157,14 @@ fn costs(results: &Results, axis: Varied, usual: &str) -> Vec<Cost> {
         let rows: Vec<&Row> = rows.collect();
         let light = Repeats::of_images(rows.iter().copied(), axis.forget(), |row| row.mean_radiance).over(&plain);
         let mean = |value: fn(&Row) -> Option<f64>| {
-            let all = values(rows.iter().copied(), value);
+            let all = values(&rows, value);
             (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
         };
         Some(Cost {
             scene: scene.to_string(),
             value: if value.is_empty() { usual.to_string() } else { value.to_string() },
             spp,
-            light: Told::mean(&light.values())?,
+            light: Estimated::mean(&light.values())?,
             rmse: mean(|row| row.rmse),
             within: mean(|row| row.within_tolerance),
             black: mean(|row| Some(row.black_pixels? as f64 / pixels(row))),

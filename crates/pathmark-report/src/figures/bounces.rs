@@ -8,7 +8,7 @@ struct Step {
     name: String,
     limit: u16,
     /// Share of all light that makes exactly this many bounces, with its interval over seeds.
-    light: Told,
+    light: Estimated,
     /// Share of all light that makes at most this many bounces.
     up_to: f64,
     /// Share of paths that are truncated at the limit.
@@ -62,7 +62,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let table = Block::table("bounces", "Light and paths by bounces", &steps)
         .column("scene and estimator", |step| step.name.clone())
         .column("bounces", |step| step.limit.to_string())
-        .told("share of the light, %", Decimals(3), |step| step.light.times(100.0))
+        .estimated("share of the light, %", Decimals(3), |step| step.light.times(100.0))
         .number("share up to here, %", Decimals(3), |step| 100.0 * step.up_to)
         .number("paths that are longer, %", Decimals(3), |step| 100.0 * step.cut)
         .end();
@@ -91,7 +91,7 @@ fn steps(name: &str, rows: &[&Row]) -> Vec<Step> {
         let (cut, paths) = cut
             .filter_map(|row| Some((row.truncated? as f64, row.paths? as f64)))
             .fold((0.0, 0.0), |sum, row| (sum.0 + row.0, sum.1 + row.1));
-        let light = Told::mean(&own.over(&whole).values())?;
+        let light = Estimated::mean(&own.over(&whole).values())?;
         let up_to = running.iter().sum::<f64>() / running.len() as f64;
         Some(Step { name: name.to_string(), limit, light, up_to, cut: cut / paths })
     };

@@ -21,12 +21,12 @@ struct Prototype {
 struct Loss {
     spp: u32,
     seeds: usize,
-    lost: Told,
+    lost: Estimated,
     prototype: Option<f64>,
 }
 
 fn radiance(rows: &[&Row]) -> Option<f64> {
-    Moments::of(&values(rows.iter().copied(), |row| row.mean_radiance)).mean()
+    Moments::of(&values(rows, |row| row.mean_radiance)).mean()
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
@@ -45,8 +45,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     };
     let known = |spp: u32| prototype.as_ref()?.bias.iter().find(|(of, _)| *of == spp).map(|(_, bias)| *bias);
     let losses = of("subpixel").filter(|((_, spp), _)| *spp < largest).filter_map(|((_, spp), rows)| {
-        let losses = values(rows.iter().copied(), |row| Some(100.0 * (row.mean_radiance? / limit - 1.0)));
-        Some(Loss { spp: *spp, seeds: losses.len(), lost: Told::mean(&losses)?, prototype: known(*spp) })
+        let losses = values(rows, |row| Some(100.0 * (row.mean_radiance? / limit - 1.0)));
+        Some(Loss { spp: *spp, seeds: losses.len(), lost: Estimated::mean(&losses)?, prototype: known(*spp) })
     });
     let losses: Vec<Loss> = losses.collect();
     let points = losses.iter().map(|loss| loss.lost.above(f64::from(loss.spp))).collect();
@@ -77,7 +77,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let table = Block::table("clamp-bias", "Bias of the subpixel clamp", &losses)
         .column("spp", |loss| loss.spp.to_string())
         .column("seeds", |loss| loss.seeds.to_string())
-        .told("bias against the clamped limit, %", Decimals(2), |loss| loss.lost)
+        .estimated("bias against the clamped limit, %", Decimals(2), |loss| loss.lost)
         .number("prototype, %", Decimals(1), |loss| loss.prototype)
         .number("bias against the true light, %", Decimals(2), |loss| {
             100.0 * ((1.0 + loss.lost.value / 100.0) * limit / truth - 1.0)

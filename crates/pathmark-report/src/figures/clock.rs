@@ -8,14 +8,8 @@ struct Line<'a> {
     image: String,
     schedule: &'a Schedule,
     rows: Vec<&'a Row>,
-    by_wall: Told,
-    by_clock: Option<Told>,
-}
-
-impl Line<'_> {
-    fn typical(&self, value: impl Fn(&Row) -> Option<f64>) -> Option<f64> {
-        typical(self.rows.iter().copied(), value)
-    }
+    by_wall: Estimated,
+    by_clock: Option<Estimated>,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
@@ -23,7 +17,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let lines: Vec<_> = results.by(|row| (results.series_name(row), row.spp, &row.schedule)).into_iter().collect();
     let speedups = |value: fn(&Row) -> Option<f64>| {
         let own = lines.iter().enumerate().map(|(index, (_, rows))| (index, serial.gains(rows, value)));
-        medians(own, results.stopping()).into_iter().collect::<BTreeMap<usize, Told>>()
+        medians(own, results.stopping()).into_iter().collect::<BTreeMap<usize, Estimated>>()
     };
     let (by_wall, by_clock) = (speedups(|row| row.makespan_s), speedups(|row| row.cpu_s()));
     let lines = lines.into_iter().enumerate().filter_map(|(index, ((image, spp, schedule), rows))| {
@@ -50,9 +44,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("pieces", |line| line.schedule.key.decomposition.clone())
         .column("threads", |line| line.schedule.key.threads.to_string())
         .column("runs", |line| line.rows.len().to_string())
-        .number("wall seconds", Decimals(4), |line| line.typical(|row| row.makespan_s))
-        .number("CPU seconds, as clock() counts", Decimals(4), |line| line.typical(|row| row.cpu_s()))
-        .number("CPU / wall", Decimals(2), |line| line.typical(|row| Some(row.cpu_s()? / row.makespan_s?)))
+        .number("wall seconds", Decimals(4), |line| typical(&line.rows, |row| row.makespan_s))
+        .number("CPU seconds, as clock() counts", Decimals(4), |line| typical(&line.rows, |row| row.cpu_s()))
+        .number("CPU / wall", Decimals(2), |line| typical(&line.rows, |row| Some(row.cpu_s()? / row.makespan_s?)))
         .number("speedup by wall time", Decimals(3), |line| line.by_wall.value)
         .number("speedup that clock() would claim", Decimals(3), |line| line.by_clock.map(|told| told.value))
         .column("remark", |line| {

@@ -4,19 +4,13 @@
 use super::prelude::*;
 use crate::scene::PROFILES;
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Options {
     /// The profile that contains every effect.
-    largest: String,
+    largest: Option<String>,
     /// The effects to price.
     price: Vec<Price>,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { largest: "all".to_string(), price: Vec::new() }
-    }
 }
 
 /// An effect, and the rows in which it is absent, compiled in but unused, and used.
@@ -81,7 +75,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let times: BTreeMap<Kind, Times> =
         results.by(Kind::of).into_iter().map(|(kind, r)| (kind, Times::of(&r))).collect();
     let mut blocks = prices(results, &price, &times);
-    blocks.extend(scenes(results, &largest));
+    blocks.extend(scenes(results, largest.as_deref().unwrap_or("all")));
     if blocks.is_empty() {
         let text = "Nothing was run with and without an effect, so there is no price of one.";
         blocks.push(Block::notice(text));
@@ -90,7 +84,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 }
 
 /// An effect's price, and the times that it is computed from.
-struct Found<'a> {
+struct Priced<'a> {
     price: &'a Price,
     absent: &'a Times,
     unused: (&'a Times, Ratio),
@@ -105,15 +99,15 @@ fn prices(results: &Results, prices: &[Price], times: &BTreeMap<Kind, Times>) ->
     let ratios: BTreeMap<(usize, &Kind), Ratio> = estimates(cells, results.stopping()).into_iter().collect();
     let found = prices.iter().enumerate().filter_map(|(index, price)| {
         let of = |kind| Some((times.get(kind)?, *ratios.get(&(index, kind))?));
-        Some(Found { price, absent: times.get(&price.absent)?, unused: of(&price.unused)?, used: of(&price.used)? })
+        Some(Priced { price, absent: times.get(&price.absent)?, unused: of(&price.unused)?, used: of(&price.used)? })
     });
-    let found: Vec<Found<'_>> = found.collect();
+    let found: Vec<Priced<'_>> = found.collect();
     if found.is_empty() {
         return Vec::new();
     }
     let rows = found.iter().map(|found| {
-        let dot = |ratio: Ratio| Some(Told::from(ratio).dot());
-        PlotRow::new(&found.price.effect, vec![dot(found.unused.1), dot(found.used.1)])
+        let dot = |ratio: Ratio| Some(Estimated::from(ratio).dot());
+        DotRow::new(&found.price.effect, vec![dot(found.unused.1), dot(found.used.1)])
     });
     let axis = Axis::linear("processor time of a sample / without the effect").including([0.95, 1.05]);
     let plot = DotPlot::new("The price of an effect", axis, rows.collect());
@@ -121,9 +115,8 @@ fn prices(results: &Results, prices: &[Price], times: &BTreeMap<Kind, Times>) ->
     plot.guides = vec![(1.0, "absent".to_string())];
     plot.subtitle = machine(results);
     plot.caption = format!(
-        "Median of ratios within a repetition. Bars: {}.{} What uses an effect is another image, with other paths.",
-        confidence(found.iter().flat_map(|found| [found.unused.1.interval, found.used.1.interval])),
-        hollow(found.iter().flat_map(|found| [found.unused.1, found.used.1]).map(Told::from)),
+        "{} What uses an effect is another image, with other paths.",
+        ratio_bars(found.iter().flat_map(|found| [found.unused.1, found.used.1])),
     );
     let place = |kind: &Kind| format!("{}, {}", kind.scene, kind.profile);
     let table = Block::table("effects-table", "The price of an effect: absent, compiled in but unused, used", &found)
@@ -133,16 +126,16 @@ fn prices(results: &Results, prices: &[Price], times: &BTreeMap<Kind, Times>) ->
         .number("rays per sample, absent", Decimals(2), |found| found.absent.rays)
         .column("unused: profile", |found| found.price.unused.profile.clone())
         .number("ns per sample, unused", Decimals(0), |found| found.unused.0.nanoseconds())
-        .told("ratio unused / absent", Decimals(3), |found| Told::from(found.unused.1))
+        .estimated("ratio unused / absent", Decimals(3), |found| Estimated::from(found.unused.1))
         .column("used", |found| place(&found.price.used))
         .number("ns per sample, used", Decimals(0), |found| found.used.0.nanoseconds())
         .number("rays per sample, used", Decimals(2), |found| found.used.0.rays)
-        .told("ratio used / absent", Decimals(3), |found| Told::from(found.used.1))
+        .estimated("ratio used / absent", Decimals(3), |found| Estimated::from(found.used.1))
         .end();
     [Block::figure("effects", plot)].into_iter().chain(generality(&found)).chain([table]).collect()
 }
 
-fn generality(found: &[Found<'_>]) -> Option<Block> {
+fn generality(found: &[Priced<'_>]) -> Option<Block> {
     let ranked = found.iter().filter(|found| !found.unused.1.is_partial);
     let dearest = ranked.max_by(|a, b| a.unused.1.value.total_cmp(&b.unused.1.value))?;
     let beyond = found.iter().filter(|found| found.unused.1.interval.low > 1.0);
@@ -154,7 +147,7 @@ fn generality(found: &[Found<'_>]) -> Option<Block> {
     };
     Some(Block::finding(format!(
         "An effect that is compiled into the kernel but not used by the scene makes a sample take {} times as long at most ({}). {verdict}.",
-        told(&dearest.unused.1, 3),
+        dearest.unused.1.in_words(3),
         dearest.price.effect,
     )))
 }
@@ -198,19 +191,16 @@ fn scenes(results: &Results, largest: &str) -> Vec<Block> {
     let Some(overall) = median(&fits.iter().map(|fit| fit.ratio.value).collect::<Vec<f64>>()) else {
         return Vec::new();
     };
-    let rows = fits
-        .iter()
-        .map(|fit| PlotRow::new(format!("{} ({})", fit.scene, fit.profile), vec![Some(Told::from(fit.ratio).dot())]));
+    let rows = fits.iter().map(|fit| {
+        DotRow::new(format!("{} ({})", fit.scene, fit.profile), vec![Some(Estimated::from(fit.ratio).dot())])
+    });
     let axis =
         Axis::linear("processor time with every effect compiled in / with the fitting profile").including([0.95, 1.1]);
     let mut plot = DotPlot::new("What a fitting profile gains", axis, rows.collect());
     plot.guides = vec![(1.0, "no gain".to_string())];
     plot.subtitle = machine(results);
-    plot.caption = format!(
-        "Median of ratios within a repetition, same image. Bars: {}.{}",
-        confidence(fits.iter().map(|fit| fit.ratio.interval)),
-        hollow(fits.iter().map(|fit| Told::from(fit.ratio))),
-    );
+    let bars = bars(fits.iter().map(|fit| fit.ratio));
+    plot.caption = format!("Median of ratios within a repetition, same image. {bars}");
     let slower: Vec<&str> = fits.iter().filter(|fit| fit.ratio.interval.high < 1.0).map(|fit| fit.scene).collect();
     let faster = fits.iter().filter(|fit| fit.ratio.interval.low > 1.0).count();
     let never = if slower.is_empty() {
@@ -231,7 +221,7 @@ fn scenes(results: &Results, largest: &str) -> Vec<Block> {
         Block::finding(format!(
             "Diffuse spheres alone ({}) take {} times as long with every effect compiled in: {verdict}.",
             fit.scene,
-            told(&fit.ratio, 3)
+            fit.ratio.in_words(3)
         ))
     });
     let table = Block::table("profiles-table", "Every scene under the fitting and the largest profile", &fits)
@@ -239,7 +229,7 @@ fn scenes(results: &Results, largest: &str) -> Vec<Block> {
         .column("fitting profile", |fit| fit.profile.to_string())
         .number("ns per sample", Decimals(0), |fit| fit.fitting.nanoseconds())
         .number("ns per sample with all effects", Decimals(0), |fit| fit.largest.nanoseconds())
-        .told("ratio", Decimals(3), |fit| Told::from(fit.ratio))
+        .estimated("ratio", Decimals(3), |fit| Estimated::from(fit.ratio))
         .end();
     [Block::figure("profiles", plot), finding].into_iter().chain(diffuse).chain([table]).collect()
 }

@@ -29,13 +29,13 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("estimator + sampler", |(contender, _)| contender.name.clone())
         .column("spp", |(_, point)| point.spp.to_string())
         .number("seconds", Decimals(4), |(_, point)| point.seconds)
-        .told("RMSE", Decimals(5), |(_, point)| Told::of(point.rmse, point.interval))
+        .estimated("RMSE", Decimals(5), |(_, point)| Estimated::of(point.rmse, point.interval))
         .number("variation over seeds", Decimals(3), |(_, point)| point.variation)
         .end();
     Ok(vec![Block::figure("error-against-time", chart), table])
 }
 
 fn series(index: usize, contender: &Contender) -> Series {
-    let point = |point: &CostPoint| Told::of(point.rmse, point.interval).above(point.seconds);
+    let point = |point: &CostPoint| Estimated::of(point.rmse, point.interval).above(point.seconds);
     Series::new(&contender.name, Look::nth(index), contender.points.iter().map(point).collect()).banded()
 }

@@ -12,11 +12,11 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let of = |name: &str| contenders.iter().find(|contender| contender.image.estimator == name);
         let (yardstick, other) = (of(first)?, of(other)?);
         let goal = [yardstick, other].iter().filter_map(|c| Some(c.points.last()?.rmse)).reduce(f64::max)?;
-        Some(Told::from(equal_error(&yardstick.renderer, &other.renderer, goal)?).dot())
+        Some(Estimated::from(equal_error(&yardstick.renderer, &other.renderer, goal)?).dot())
     };
-    let rows: Vec<PlotRow> = scenes
+    let rows: Vec<DotRow> = scenes
         .iter()
-        .map(|(scene, contenders)| PlotRow::new(scene, others.iter().map(|other| dot(contenders, other)).collect()))
+        .map(|(scene, contenders)| DotRow::new(scene, others.iter().map(|other| dot(contenders, other)).collect()))
         .collect();
     if rows.iter().all(|row| row.dots.iter().all(Option::is_none)) {
         return Ok(vec![Block::notice("No two estimators were measured on the same scene.")]);

@@ -37,13 +37,7 @@ struct Line<'a> {
     spp: u32,
     crew: String,
     rows: Vec<&'a Row>,
-    seconds: Told,
-}
-
-impl Line<'_> {
-    fn typical(&self, value: impl Fn(&Row) -> Option<f64>) -> Option<f64> {
-        typical(self.rows.iter().copied(), value)
-    }
+    seconds: Estimated,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
@@ -70,10 +64,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             ((label.clone(), sampler, crew, rows), seconds)
         })
     });
-    let (mut dots, mut lines): (Vec<PlotRow>, _) = (Vec::new(), Vec::new());
+    let (mut dots, mut lines): (Vec<DotRow>, _) = (Vec::new(), Vec::new());
     for ((label, sampler, crew, rows), seconds) in medians(cells, results.stopping()) {
         if dots.last().is_none_or(|row| row.name != label) {
-            dots.push(PlotRow::new(label, vec![None; crews.len()]));
+            dots.push(DotRow::new(label, vec![None; crews.len()]));
         }
         let places = dots.iter_mut().next_back().into_iter().flat_map(|row| row.dots.iter_mut().zip(&crews));
         places.filter(|(_, (_, name))| *name == crew).for_each(|(dot, _)| *dot = Some(seconds.times(1e3).dot()));
@@ -82,18 +76,18 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let plot = DotPlot::new("Time by random number generator", Axis::log("milliseconds"), dots);
     let mut plot = plot.grouped(crews.iter().map(|(_, crew)| crew));
     plot.subtitle = results.workload();
-    let intervals = lines.iter().filter_map(|line| line.seconds.interval);
-    let hollow = hollow(lines.iter().map(|line| line.seconds));
-    plot.caption = format!("Median. Bars: {}.{hollow}", confidence(intervals));
+    plot.caption = format!("Median. {}", bars(lines.iter().map(|line| line.seconds)));
     let finding = compare.map_or(Ok(None), |compare| finding(results, &compare))?;
     let table = Block::table("generators-table", "Generators: medians over repetitions", &lines)
         .column("generator", |line| line.sampler.to_string())
         .column("samples per pixel", |line| line.spp.to_string())
         .column("threads", |line| line.crew.clone())
-        .told("median seconds", Decimals(4), |line| line.seconds)
-        .number("switches per second", Decimals(0), |line| line.typical(switches_per_second))
-        .number("CPU / wall", Decimals(2), |line| line.typical(|row| Some(row.cpu_s()? / row.makespan_s?)))
-        .number("system share of CPU", Decimals(2), |line| line.typical(|row| Some(row.cpu_system_s? / row.cpu_s()?)))
+        .estimated("median seconds", Decimals(4), |line| line.seconds)
+        .number("switches per second", Decimals(0), |line| typical(&line.rows, switches_per_second))
+        .number("CPU / wall", Decimals(2), |line| typical(&line.rows, |row| Some(row.cpu_s()? / row.makespan_s?)))
+        .number("system share of CPU", Decimals(2), |line| {
+            typical(&line.rows, |row| Some(row.cpu_system_s? / row.cpu_s()?))
+        })
         .end();
     Ok([Block::figure("generators", plot)].into_iter().chain(finding).chain([table]).collect())
 }

@@ -60,10 +60,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     });
     let cells: Vec<((String, f64), Repeats)> = cells.collect();
     let efficiencies = medians(cells.clone(), results.stopping());
-    let hollow = hollow(efficiencies.iter().map(|(_, efficiency)| *efficiency));
-    let intervals = efficiencies.iter().filter_map(|(_, efficiency)| efficiency.interval).collect::<Vec<_>>();
+    let caption = bars(efficiencies.iter().map(|(_, efficiency)| *efficiency));
     let lines = gathered(efficiencies.into_iter().map(|((name, job_s), efficiency)| (name, (job_s, efficiency))));
-    let line = |(index, (strategy, mut places)): (usize, (String, Vec<(f64, Told)>))| {
+    let line = |(index, (strategy, mut places)): (usize, (String, Vec<(f64, Estimated)>))| {
         places.sort_by(|a, b| a.0.total_cmp(&b.0));
         let points = places.iter().map(|(job_s, efficiency)| efficiency.above(job_s * 1e6));
         Series::new(strategy, Look::nth(index), points.collect())
@@ -80,7 +79,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         series,
     );
     chart.subtitle = results.workload();
-    chart.caption = format!("Bars: {}.{hollow}", confidence(intervals));
+    chart.caption = caption;
     chart.overlays = vec![Overlay::guide("one half: METG(50 %)", Curve::Line { intercept: HALF, slope: 0.0 })];
     let smallest = grains.iter().map(|(strategy, grains)| (strategy, in_words(&metg(grains, HALF, LEVEL))));
     let table = Block::table("metg", "Smallest job that keeps half of the processors", smallest)
@@ -99,13 +98,13 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 /// Compares two strategies on the same pieces in the same repetition, from the smallest jobs to the largest.
 fn compared(results: &Results, first: &str, second: &str) -> Result<Vec<Block>> {
     let groups = results.by(|row| (&row.image, row.decomposition.as_str(), row.threads));
-    let any_strategy: Forget = |_, schedule| schedule.strategy.clear();
-    let mut cells = Vec::new();
-    for rows in groups.into_values() {
+    let pairs = groups.into_values().map(|rows| {
         let of = |name: &str| rows.iter().copied().filter(|row| row.strategy == name).collect::<Vec<&Row>>();
-        cells.push((rows[0], ratios(of(first), of(second), any_strategy, |row| row.makespan_s)?));
-    }
-    let mut lines: Vec<(&Row, Ratio)> = estimates(cells, results.stopping());
+        (rows[0], of(first), of(second))
+    });
+    let pairs: Vec<(&Row, Vec<&Row>, Vec<&Row>)> = pairs.collect();
+    let cells = pairs.iter().map(|(row, first, second)| (*row, &first[..], &second[..]));
+    let mut lines = time_ratios(cells, |_, schedule| schedule.strategy.clear(), results.stopping())?;
     if lines.is_empty() {
         return Ok(Vec::new());
     }
@@ -129,7 +128,7 @@ fn compared(results: &Results, first: &str, second: &str) -> Result<Vec<Block>> 
         .column("pieces", |(row, _)| row.decomposition.clone())
         .column("jobs", |(row, _)| row.jobs.to_string())
         .column("threads", |(row, _)| row.threads.to_string())
-        .told("ratio", Decimals(3), |(_, ratio)| Told::from(*ratio))
+        .estimated("ratio", Decimals(3), |(_, ratio)| Estimated::from(*ratio))
         .end();
     Ok(vec![Block::finding(finding), table])
 }
@@ -167,13 +166,12 @@ fn overhead(results: &Results, baseline: &Baseline<'_>) -> Block {
     });
     let mut extra = medians(extra, results.stopping());
     extra.sort_by(|(_, a), (_, b)| (a.is_partial).cmp(&b.is_partial).then(a.value.total_cmp(&b.value)));
-    let rows = extra.iter().map(|(name, told)| PlotRow::new(name, vec![Some(told.dot())])).collect();
+    let rows = extra.iter().map(|(name, told)| DotRow::new(name, vec![Some(told.dot())])).collect();
     let mut plot = DotPlot::new("What a job costs beside its work", Axis::log("nanoseconds per job"), rows);
     plot.subtitle = results.workload();
     plot.caption = format!(
-        "(Processors in use × time - serial work on the same pieces) / jobs, at the most jobs measured; starting threads is in it. Bars: {}.{}",
-        confidence(extra.iter().filter_map(|(_, told)| told.interval)),
-        hollow(extra.iter().map(|(_, told)| *told)),
+        "(Processors in use × time - serial work on the same pieces) / jobs, at the most jobs measured; starting threads is in it. {}",
+        bars(extra.iter().map(|(_, told)| *told)),
     );
     Block::figure("overhead", plot)
 }

@@ -5,19 +5,13 @@ use crate::analysis::versus::equal_error;
 use crate::contenders::{Contender, contenders};
 use crate::kernel::DEVICE_NAME;
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Options {
     /// The kernel that the others are compared with.
-    yardstick: String,
+    yardstick: Option<String>,
     /// The RMSE at which the gain of all choices together is measured, in linear radiance.
-    goal: Positive,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { yardstick: "scalar".to_string(), goal: Positive(0.01) }
-    }
+    goal: Option<Positive>,
 }
 
 /// The rows of one kernel, for one workload and number of threads.
@@ -45,11 +39,8 @@ fn works<'a>(results: &'a Results, yardstick: &str) -> Result<Vec<Vec<Line<'a>>>
         let measured = rows.into_iter().filter(|row| row.makespan_s.is_some());
         let kernels = group(measured, |row| row.kernel_name());
         let Some(base) = kernels.get(yardstick) else { continue };
-        let gains = kernels.iter().map(|(kernel, rows)| {
-            Ok((kernel, ratios(base.iter().copied(), rows.iter().copied(), any_kernel, |row| row.makespan_s)?))
-        });
-        let gains = estimates(gains.collect::<Result<Vec<_>>>()?, results.stopping());
-        let gains: BTreeMap<&String, Ratio> = gains.into_iter().collect();
+        let cells = kernels.iter().map(|(kernel, rows)| (kernel, &base[..], &rows[..]));
+        let gains: BTreeMap<&String, Ratio> = time_ratios(cells, any_kernel, results.stopping())?.into_iter().collect();
         let line = |(kernel, rows): (&String, &Vec<&'a Row>)| {
             let name = format!("{scene}: {estimator} + {sampler}");
             let ratio = gains.get(kernel).copied();
@@ -65,41 +56,36 @@ fn works<'a>(results: &'a Results, yardstick: &str) -> Result<Vec<Vec<Line<'a>>>
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Options { yardstick, goal } = options(results, "kernels")?;
+    let (yardstick, goal) = (yardstick.unwrap_or_else(|| "scalar".to_string()), goal.map_or(0.01, |goal| goal.0));
     let works = works(results, &yardstick)?;
     if works.is_empty() {
         return Ok(vec![Block::notice("No two kernels rendered the same, so there is no ratio of them.")]);
     }
     let mut blocks = vec![Block::figure("kernels", plot(results, &works, &yardstick))];
     let scenes = contenders(results)?;
-    blocks.extend(scenes.iter().filter_map(|(scene, all)| finding(scene, all, &yardstick, goal.0)));
+    blocks.extend(scenes.iter().filter_map(|(scene, all)| finding(scene, all, &yardstick, goal)));
     let mut table = Block::table("kernels", "Samples and rays per second, medians", works.iter().flatten())
         .column("workload", |line| line.name.clone())
         .column("threads", |line| line.threads.to_string())
         .column("kernel", |line| line.kernel.clone())
         .number("Msamples/s", Decimals(2), |line| line.rate(|row| row.paths))
         .number("Mrays/s", Decimals(2), |line| line.rate(|row| row.rays))
-        .told(format!("times as fast as {yardstick}"), Decimals(2), |line| line.ratio.map(Told::from));
+        .estimated(format!("times as fast as {yardstick}"), Decimals(2), |line| line.ratio.map(Estimated::from));
     if results.rows().any(|row| row.device_compile_s.is_some()) {
-        table = table.number("s to compile", Decimals(2), |line| line.typical(|row| row.device_compile_s)).number(
-            "s to copy the scene",
-            Decimals(4),
-            |line| line.typical(|row| row.device_copy_s),
-        );
+        table = table
+            .number("s to compile", Decimals(2), |line| typical(&line.rows, |row| row.device_compile_s))
+            .number("s to copy the scene", Decimals(4), |line| typical(&line.rows, |row| row.device_copy_s));
     }
     blocks.push(table.end());
     Ok(blocks)
 }
 
 impl Line<'_> {
-    fn typical(&self, seconds: fn(&Row) -> Option<f64>) -> Option<f64> {
-        median(&values(self.rows.iter().copied(), seconds))
-    }
-
     fn rate(&self, count: fn(&Row) -> Option<u64>) -> Option<f64> {
         // The rate is that of the longest renders, at the end of a curve.
         let spp = self.rows.iter().map(|row| row.spp).max();
-        let longest = self.rows.iter().copied().filter(|row| Some(row.spp) == spp);
-        median(&values(longest, |row| Some(count(row)? as f64 / row.makespan_s? / 1e6)))
+        let longest = self.rows.iter().filter(|row| Some(row.spp) == spp);
+        typical(longest, |row| Some(count(row)? as f64 / row.makespan_s? / 1e6))
     }
 }
 
@@ -131,8 +117,8 @@ fn plot(results: &Results, works: &[Vec<Line<'_>>], yardstick: &str) -> DotPlot 
     let alone = || works.iter().filter(|lines| lines[0].threads == 1);
     let ratio = |lines: &[Line<'_>], kernel: &str| lines.iter().find(|line| line.kernel == kernel)?.ratio;
     let rows = alone().map(|lines| {
-        let dots = kernels().map(|kernel| Some(Told::from(ratio(lines, kernel)?).dot()));
-        PlotRow::new(&lines[0].name, dots.collect())
+        let dots = kernels().map(|kernel| Some(Estimated::from(ratio(lines, kernel)?).dot()));
+        DotRow::new(&lines[0].name, dots.collect())
     });
     let axis = Axis::log(format!("samples per second / those of the {yardstick} kernel")).including([1.0]);
     let has_devices = kernels().any(|kernel| kernel.contains(DEVICE_NAME));
@@ -141,8 +127,7 @@ fn plot(results: &Results, works: &[Vec<Line<'_>>], yardstick: &str) -> DotPlot 
     plot.guides = vec![(1.0, format!("the {yardstick} kernel"))];
     plot.subtitle = format!("one thread, {}", results.machine_line());
     let shown = alone().flatten().filter(|line| line.kernel != yardstick);
-    let intervals = shown.filter_map(|line| Some(line.ratio?.interval));
-    let hollow = hollow(alone().flatten().filter_map(|line| line.ratio.map(Told::from)));
-    plot.caption = format!("Median of ratios of renders of the same image. Bars: {}.{hollow}", confidence(intervals));
+    let bars = bars(shown.filter_map(|line| line.ratio));
+    plot.caption = format!("Median of ratios of renders of the same image. {bars}");
     plot
 }

@@ -19,12 +19,12 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     );
     let median = |cost: &MessageCost| {
         let interval = Interval { low: 1e6 * cost.low_s, high: 1e6 * cost.high_s, level: LEVEL };
-        Told::of(1e6 * cost.median_s, Some(interval))
+        Estimated::of(1e6 * cost.median_s, Some(interval))
     };
     let table = Block::table("message-costs", "What messages cost", &told.costs)
         .column("operation", |cost| cost.operation.clone())
         .column("rank 0 meanwhile", |cost| cost.rank_0.clone())
-        .told("median, us", Significant(3), |cost| median(cost))
+        .estimated("median, us", Significant(3), |cost| median(cost))
         .column("repetitions", |cost| cost.repetitions.to_string())
         .end();
     Ok(vec![Block::Finding(finding), table])

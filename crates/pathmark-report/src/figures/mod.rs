@@ -132,7 +132,28 @@ pub fn check_figures(definition: &Definition) -> Result<()> {
             .in_file(&definition.file, at)
             .into());
     }
-    options::check_tables(definition)
+    check_tables(definition)
+}
+
+/// Refuses tables for figures that the definition does not list, and options that a figure does not have.
+fn check_tables(definition: &Definition) -> Result<()> {
+    for name in definition.figure.keys() {
+        if !definition.figures.contains(name) {
+            let at = place(&definition.text, name);
+            return Err(InputError::new("figure", name, "has parameters, but `figures` does not list it")
+                .allowed(definition.figures.join(", "))
+                .in_file(&definition.file, at)
+                .into());
+        }
+    }
+    let mut listed = FIGURES.iter().filter(|entry| definition.figure.contains_key(entry.name));
+    listed.try_for_each(|entry| (entry.check)(definition, entry.name))
+}
+
+/// The position of the table's head: line and column.
+fn place(text: &str, name: &str) -> Option<(usize, usize)> {
+    let is_head = |line: &str| line.trim_start_matches('[').starts_with(&format!("figure.{name}"));
+    text.lines().position(|line| line.starts_with('[') && is_head(line)).map(|index| (index + 1, 1))
 }
 
 /// The first of the experiment's figures that compares with serial runs.

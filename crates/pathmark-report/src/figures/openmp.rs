@@ -16,26 +16,18 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         return Ok(vec![Block::notice(format!("{yardstick} was not run, so there is nothing to compare with."))]);
     };
     let others = schedules.iter().filter(|(s, _)| *s != own && s.key.threads == own.key.threads);
-    let cells = others.map(|(schedule, rows)| {
-        let over_own = ratios(rows.iter().copied(), own_rows.iter().copied(), any_schedule, |row| row.makespan_s)?;
-        Ok((*schedule, over_own))
-    });
-    let mut ratios = estimates(cells.collect::<Result<Vec<_>>>()?, results.stopping());
+    let cells = others.map(|(schedule, rows)| (*schedule, &rows[..], &own_rows[..]));
+    let mut ratios = time_ratios(cells, any_schedule, results.stopping())?;
     ratios.sort_by(|a, b| a.1.rising(&b.1));
     let rows =
-        ratios.iter().map(|(schedule, ratio)| PlotRow::new(&schedule.name, vec![Some(Told::from(*ratio).dot())]));
+        ratios.iter().map(|(schedule, ratio)| DotRow::new(&schedule.name, vec![Some(Estimated::from(*ratio).dot())]));
     let axis = Axis::linear(format!("time / time of {yardstick}")).including([0.95, 1.05]);
     let title = if yardstick == OPENMP { "OpenMP's dynamic schedule" } else { &yardstick };
     let mut plot = DotPlot::new(format!("Time against {title}"), axis, rows.collect());
     plot.guides = vec![(1.0, yardstick.clone())];
     plot.subtitle = results.workload();
-    let intervals = ratios.iter().map(|(_, ratio)| ratio.interval);
-    plot.caption = format!(
-        "{} each. Median of ratios within a repetition. Bars: {}.{}",
-        counted(own.key.threads, "thread"),
-        confidence(intervals),
-        hollow(ratios.iter().map(|(_, ratio)| Told::from(*ratio))),
-    );
+    let bars = ratio_bars(ratios.iter().map(|(_, ratio)| *ratio));
+    plot.caption = format!("{} each. {bars}", counted(own.key.threads, "thread"));
     let best = ratios.iter().find(|(schedule, ratio)| !ratio.is_partial && !schedule.name.starts_with("openmp"));
     let finding = best.map(|(best, ratio)| {
         Block::finding(format!(

@@ -1,7 +1,6 @@
 //! Options of figures: the table `[figure.NAME]` in an experiment's definition.
 
-use super::FIGURES;
-use crate::error::{InputError, Result};
+use crate::error::Result;
 use crate::experiment::Definition;
 use crate::input::parse_within;
 use crate::results::Results;
@@ -58,25 +57,4 @@ impl TryFrom<f64> for Positive {
     fn try_from(value: f64) -> std::result::Result<Self, Self::Error> {
         if value > 0.0 && value.is_finite() { Ok(Self(value)) } else { Err("must be a positive number") }
     }
-}
-
-/// Refuses tables for figures that the definition does not list, and options that a figure does not have.
-pub(super) fn check_tables(definition: &Definition) -> Result<()> {
-    for name in definition.figure.keys() {
-        if !definition.figures.contains(name) {
-            let at = place(&definition.text, name);
-            return Err(InputError::new("figure", name, "has parameters, but `figures` does not list it")
-                .allowed(definition.figures.join(", "))
-                .in_file(&definition.file, at)
-                .into());
-        }
-    }
-    let mut listed = FIGURES.iter().filter(|entry| definition.figure.contains_key(entry.name));
-    listed.try_for_each(|entry| (entry.check)(definition, entry.name))
-}
-
-/// The position of the table's head: line and column.
-fn place(text: &str, name: &str) -> Option<(usize, usize)> {
-    let is_head = |line: &str| line.trim_start_matches('[').starts_with(&format!("figure.{name}"));
-    text.lines().position(|line| line.starts_with('[') && is_head(line)).map(|index| (index + 1, 1))
 }

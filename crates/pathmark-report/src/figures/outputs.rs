@@ -12,67 +12,54 @@ struct Line<'a> {
     ratio: Option<Ratio>,
 }
 
-impl Line<'_> {
-    fn typical(&self, value: impl Fn(&Row) -> Option<f64>) -> Option<f64> {
-        typical(self.rows.iter().copied(), value)
-    }
-}
-
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let yardstick = yardstick(results, "outputs", "slots")?;
     let groups = results.by(|row| (row.output.as_str(), row.decomposition.as_str(), row.threads));
     let kinds: Vec<(&str, usize)> = results.by(|row| (row.decomposition.as_str(), row.threads)).into_keys().collect();
     let outputs = in_table_order(groups.keys().map(|(output, ..)| *output), OUTPUTS.iter().map(|entry| entry.name));
-    let mut cells = Vec::new();
-    for (_, output) in &outputs {
-        for (decomposition, threads) in kinds.iter().copied() {
-            let of = |output| groups.get(&(output, decomposition, threads)).map_or(&[][..], Vec::as_slice);
-            let (rows, base) = (of(output), of(&yardstick));
-            let times = if *output == yardstick {
-                Repeats::default()
-            } else {
-                let any_output: Forget = |_, schedule| schedule.output.clear();
-                ratios(rows.iter().copied(), base.iter().copied(), any_output, |row| row.makespan_s)?
-            };
-            cells.push((Line { output, decomposition, threads, rows, ratio: None }, times));
-        }
-    }
-    let (mut lines, times): (Vec<Line<'_>>, Vec<Repeats>) = cells.into_iter().unzip();
-    for (index, ratio) in estimates(times.into_iter().enumerate(), results.stopping()) {
-        lines[index].ratio = Some(ratio);
-    }
-    let dot = |line: &Line<'_>| Some(Told::from(line.ratio?).dot());
+    let of = |(output, (decomposition, threads))| {
+        groups.get(&(output, decomposition, threads)).map_or(&[][..], Vec::as_slice)
+    };
+    let cells = outputs.iter().flat_map(|(_, output)| kinds.iter().map(move |kind| (*output, *kind)));
+    let others = cells.clone().filter(|(output, _)| *output != yardstick);
+    let pairs = others.map(|cell| (cell, of(cell), of((yardstick.as_str(), cell.1))));
+    let ratios = time_ratios(pairs, |_, schedule| schedule.output.clear(), results.stopping())?;
+    let ratios: BTreeMap<_, Ratio> = ratios.into_iter().collect();
+    let lines = cells.map(|cell| {
+        let (output, (decomposition, threads)) = cell;
+        Line { output, decomposition, threads, rows: of(cell), ratio: ratios.get(&cell).copied() }
+    });
+    let lines: Vec<Line<'_>> = lines.collect();
+    let dot = |line: &Line<'_>| Some(Estimated::from(line.ratio?).dot());
     let rows = lines
         .chunk_by(|a, b| a.output == b.output)
-        .map(|own| PlotRow::new(own[0].output, own.iter().map(dot).collect()));
+        .map(|own| DotRow::new(own[0].output, own.iter().map(dot).collect()));
     let mut plot = DotPlot::new(
         format!("Time by output, against {yardstick}"),
         Axis::linear(format!("time / time with {yardstick}")).including([0.95, 1.05]),
         rows.filter(|row| row.dots.iter().any(Option::is_some)).collect(),
     )
-    .grouped(kinds.iter().map(|(decomposition, threads)| {
-        format!("{decomposition}, {threads} thread{}", if *threads == 1 { "" } else { "s" })
-    }));
+    .grouped(kinds.iter().map(|(decomposition, threads)| format!("{decomposition}, {}", counted(*threads, "thread"))));
     plot.guides = vec![(1.0, yardstick.clone())];
     plot.subtitle = results.workload();
-    let intervals = lines.iter().filter_map(|line| Some(line.ratio?.interval));
-    let hollow = hollow(lines.iter().filter_map(|line| line.ratio.map(Told::from)));
-    plot.caption = format!("Median of ratios within a repetition. Bars: {}.{hollow}", confidence(intervals));
+    plot.caption = ratio_bars(lines.iter().filter_map(|line| line.ratio));
     // Not every output was tried on all pieces.
     let measured = lines.iter().filter(|line| !line.rows.is_empty());
     let table = Block::table("outputs-table", "Outputs: medians over repetitions", measured)
         .column("output", |line| line.output.to_string())
         .column("pieces", |line| line.decomposition.to_string())
         .column("threads", |line| line.threads.to_string())
-        .number("median ms", Decimals(3), |line| line.typical(|row| Some(row.makespan_s? * 1e3)))
-        .told(format!("time / time with {yardstick}"), Decimals(3), |line| {
-            if line.output == yardstick { Some(Told::of(1.0, None)) } else { line.ratio.map(Told::from) }
+        .number("median ms", Decimals(3), |line| typical(line.rows, |row| Some(row.makespan_s? * 1e3)))
+        .estimated(format!("time / time with {yardstick}"), Decimals(3), |line| {
+            if line.output == yardstick { Some(Estimated::of(1.0, None)) } else { line.ratio.map(Estimated::from) }
         })
-        .number("ms to put the film together", Decimals(3), |line| line.typical(|row| Some(row.merge_s? * 1e3)))
+        .number("ms to put the film together", Decimals(3), |line| typical(line.rows, |row| Some(row.merge_s? * 1e3)))
         .number("peak memory, MiB", Decimals(1), |line| {
-            line.typical(|row| Some(row.peak_rss_bytes? as f64 / f64::from(1 << 20)))
+            typical(line.rows, |row| Some(row.peak_rss_bytes? as f64 / f64::from(1 << 20)))
         })
-        .number("voluntary switches", Decimals(0), |line| line.typical(|row| Some(row.voluntary_switches? as f64)))
+        .number("voluntary switches", Decimals(0), |line| {
+            typical(line.rows, |row| Some(row.voluntary_switches? as f64))
+        })
         .end();
     Ok(vec![Block::figure("outputs", plot), table])
 }

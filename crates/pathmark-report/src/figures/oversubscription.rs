@@ -31,16 +31,15 @@ type Lines = BTreeMap<String, Vec<Point>>;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Options { claim } = options(results, "oversubscription")?;
-    let (mut by_grid, mut by_threads, mut intervals) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut by_grid, mut by_threads) = (Vec::new(), Vec::new());
     let groups = results.by(|row| (&row.schedule, results.series_name(row), row.spp)).into_iter();
     let cells = groups.map(|(key, rows)| {
         let seconds = Repeats::of_rows(rows.iter().copied(), |row| row.makespan_s);
         ((key, rows[0].jobs), seconds)
     });
     let times = medians(cells, results.stopping());
-    let hollow = hollow(times.iter().map(|(_, time)| *time));
+    let caption = format!("Median. {}", bars(times.iter().map(|(_, time)| *time)));
     for (((schedule, series, _), jobs), time) in times {
-        intervals.extend(time.interval);
         let time = time.times(1e3);
         let threads = schedule.key.threads;
         if schedule.key.decomposition.starts_with(GRID) {
@@ -52,7 +51,6 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             by_threads.push((joined([series, schedule.name.clone()]), time.above(threads as f64)));
         }
     }
-    let caption = format!("Median. Bars: {}.{hollow}", confidence(intervals));
     let chart = |title: &str, axis: Axis, lines: Lines| {
         let ticks: Vec<f64> = lines.values().flatten().map(|point| point.x).collect();
         let y = Axis::linear("milliseconds").including([0.0]);
@@ -89,7 +87,7 @@ fn finding(results: &Results, claim: &Claim) -> Result<Option<Block>> {
     let against_sections = Partners::of(fewer, without_pieces)?.pairs(own()).costs(seconds);
     let against_few = Partners::of(few, with_pieces)?.pairs(own()).costs(seconds);
     let in_words = |ratios: &Repeats| {
-        let Told { value, interval, .. } = ratios.median(results.stopping())?;
+        let Estimated { value, interval, .. } = ratios.median(results.stopping())?;
         let interval = interval?;
         let verdict = match (interval.low > 1.0, interval.high < 1.0) {
             (true, _) => "longer",

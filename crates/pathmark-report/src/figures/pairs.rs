@@ -38,9 +38,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             .column("A", |pair| pair.a.name.clone())
             .column("B", |pair| pair.b.name.clone())
             .number("at RMSE", Decimals(4), |pair| pair.place.rmse)
-            .told("seconds of A / seconds of B", Decimals(3), |pair| pair.time.map(Told::from))
+            .estimated("seconds of A / seconds of B", Decimals(3), |pair| pair.time.map(Estimated::from))
             .number("after seconds", Decimals(3), |pair| pair.place.seconds)
-            .told("RMSE of A / RMSE of B", Decimals(3), |pair| pair.error.map(Told::from))
+            .estimated("RMSE of A / RMSE of B", Decimals(3), |pair| pair.error.map(Estimated::from))
             .end(),
     );
     Ok(blocks)

@@ -42,7 +42,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     }
     let dots = pairs
         .iter()
-        .filter_map(|pair| Some(PlotRow::new(&pair.name, vec![Some(Told::from(pair.light?).times(1e4).dot())])));
+        .filter_map(|pair| Some(DotRow::new(&pair.name, vec![Some(Estimated::from(pair.light?).times(1e4).dot())])));
     let axis =
         Axis::linear("light of single precision over that of double, less 1, in ten-thousandths").including([0.0]);
     let mut plot = DotPlot::new("Is single precision darker or lighter?", axis, dots.collect());
@@ -51,7 +51,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     plot.caption =
         "Mean over seeds, both precisions with the same random numbers to fewer digits. Bars: 95 %.".to_string();
     let rmse = |rows: &[&Row]| {
-        let mse = values(rows.iter().copied(), |row| row.mse);
+        let mse = values(rows, |row| row.mse);
         (mse.iter().sum::<f64>() / mse.len() as f64).sqrt()
     };
     let sum = |rows: &[&Row], count: fn(&Row) -> Option<u64>| {
@@ -59,10 +59,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     };
     let table = Block::table("precision", "Single precision beside double", &pairs)
         .column("scene and estimator", |pair| pair.name.clone())
-        .told("seconds of double / seconds of single", Decimals(2), |pair| Told::from(pair.time))
+        .estimated("seconds of double / seconds of single", Decimals(2), |pair| Estimated::from(pair.time))
         .number("RMSE, double", Decimals(4), |pair| rmse(&pair.double))
         .number("RMSE, single", Decimals(4), |pair| rmse(&pair.single))
-        .told("light of single / light of double - 1", Significant(2), |pair| pair.light.map(Told::from))
+        .estimated("light of single / light of double - 1", Significant(2), |pair| pair.light.map(Estimated::from))
         .column("rays that met nothing, double", |pair| sum(&pair.double, |row| row.escaped))
         .column("rays that met nothing, single", |pair| sum(&pair.single, |row| row.escaped))
         .column("invalid samples, double", |pair| sum(&pair.double, |row| row.invalid_samples))

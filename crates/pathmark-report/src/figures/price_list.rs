@@ -3,21 +3,16 @@
 use super::prelude::*;
 use crate::contenders::{Check, Contender, contenders};
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Options {
     /// The RMSEs to price, in linear radiance.
-    goals: Vec<Positive>,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { goals: [0.1, 0.05, 0.02, 0.01].map(Positive).to_vec() }
-    }
+    goals: Option<Vec<Positive>>,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { goals } = options(results, "price-list")?;
+    let goals = options::<Options>(results, "price-list")?.goals;
+    let goals = goals.unwrap_or_else(|| [0.1, 0.05, 0.02, 0.01].map(Positive).to_vec());
     let scenes = contenders(results)?;
     let all: Vec<&Contender> = scenes.values().flatten().collect();
     if all.is_empty() {
@@ -28,9 +23,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         if scenes.len() > 1 { format!("{}: {}", contender.image.scene, contender.name) } else { contender.name.clone() }
     };
     let seconds = |contender: &Contender, goal: Positive| Some(contender.renderer.price(goal.0)?.seconds);
-    let dots =
-        |contender: &Contender| goals.iter().map(|goal| Some(Told::from(seconds(contender, *goal)?).dot())).collect();
-    let rows = all.iter().map(|contender| PlotRow::new(name(contender), dots(contender))).collect();
+    let dots = |contender: &Contender| {
+        goals.iter().map(|goal| Some(Estimated::from(seconds(contender, *goal)?).dot())).collect()
+    };
+    let rows = all.iter().map(|contender| DotRow::new(name(contender), dots(contender))).collect();
     let plot = DotPlot::new("What each accuracy costs", Axis::log("seconds of rendering"), rows);
     let mut plot = plot.grouped(goals.iter().map(|goal| format!("RMSE {}", goal.0)));
     plot.subtitle = results.workload();
@@ -43,12 +39,14 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut table = Block::table("price-list", "Price list, intervals of 95 %", checks)
         .column("renderer", |(contender, _)| name(contender))
         .number("variance of a sample", Significant(3), |(contender, _)| variance(contender))
-        .told("s per sample and pixel", Significant(3), |(own, _)| Told::from(own.renderer.seconds_per_spp))
-        .told("efficiency, 1 / (variance x s)", Significant(3), |(own, _)| own.renderer.efficiency().map(Told::from));
+        .estimated("s per sample and pixel", Significant(3), |(own, _)| Estimated::from(own.renderer.seconds_per_spp))
+        .estimated("efficiency, 1 / (variance x s)", Significant(3), |(own, _)| {
+            own.renderer.efficiency().map(Estimated::from)
+        });
     table = table.number("least RMSE that was measured", Significant(3), |(contender, _)| least_error(contender));
     for goal in &goals {
         let head = format!("seconds to an RMSE of {}", goal.0);
-        table = table.told(head, Significant(3), |(contender, _)| seconds(contender, *goal).map(Told::from));
+        table = table.estimated(head, Significant(3), |(contender, _)| seconds(contender, *goal).map(Estimated::from));
     }
     let table = table
         .number("predicted for spp", Decimals(0), |(_, found)| found.as_ref().map(|check| f64::from(check.spp)))

@@ -11,7 +11,7 @@ struct Line {
     image: String,
     spp: u32,
     seeds: usize,
-    error: Told,
+    error: Estimated,
     /// RMSE of display values.
     shown: f64,
 }
@@ -22,7 +22,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let at_spp = group(rows.iter().copied(), |row| row.spp).into_iter().filter_map(|(spp, rows)| {
             let mse = one_per_seed(&rows, |row| row.mse);
             let interval = over_seeds(&mse, LEVEL).map(|error| error.rmse.interval);
-            let error = Told { count: Some(mse.len()), ..Told::of(root_of_mean(&mse), interval) };
+            let error = Estimated { count: Some(mse.len()), ..Estimated::of(root_of_mean(&mse), interval) };
             let shown = root_of_mean(&one_per_seed(&rows, |row| row.mse_display));
             (!mse.is_empty()).then(|| Line { image: name.clone(), spp, seeds: mse.len(), error, shown })
         });
@@ -73,7 +73,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("image", |line| line.image.clone())
         .column("spp", |line| line.spp.to_string())
         .column("seeds", |line| line.seeds.to_string())
-        .told("RMSE, linear", Decimals(5), |line| line.error)
+        .estimated("RMSE, linear", Decimals(5), |line| line.error)
         .number("RMSE, display", Decimals(5), |line| line.shown)
         .end();
     let mut blocks = vec![Block::figure("rmse-against-spp", chart)];

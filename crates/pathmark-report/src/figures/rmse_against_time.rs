@@ -4,17 +4,11 @@
 use super::prelude::*;
 use crate::contenders::one_per_seed;
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Options {
     /// The RMSE whose price is extrapolated, in linear radiance.
-    goal: Positive,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { goal: Positive(0.01) }
-    }
+    goal: Option<Positive>,
 }
 
 /// An image's series and its schedule.
@@ -26,7 +20,7 @@ struct Place<'a> {
     /// Scene and size: prices in others are not compared with its price.
     setting: (&'a str, u32, u32),
     spp: u32,
-    seconds: Told,
+    seconds: Estimated,
     mse: f64,
 }
 
@@ -42,7 +36,7 @@ impl Place<'_> {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { goal } = options(results, "rmse-against-time")?;
+    let goal = options::<Options>(results, "rmse-against-time")?.goal.map_or(0.01, |goal| goal.0);
     let groups = results.by(|row| ((results.series_name(row), &row.schedule), row.spp));
     let cells = groups.into_iter().map(|((key, spp), rows)| {
         let mse = one_per_seed(&rows, |row| row.mse);
@@ -71,16 +65,15 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         series.collect(),
     );
     chart.subtitle = results.workload();
-    let intervals = places.iter().filter_map(|place| place.seconds.interval);
-    let hollow = hollow(places.iter().map(|place| place.seconds));
-    chart.caption = format!("Points along a line: growing samples per pixel. Bars: {}.{hollow}", confidence(intervals));
+    let bars = bars(places.iter().map(|place| place.seconds));
+    chart.caption = format!("Points along a line: growing samples per pixel. {bars}");
     let ranked = places.iter().filter(|place| !place.seconds.is_partial);
     let by_setting = gathered(ranked.map(|place| (place.setting, (&place.key, place.price())))).into_values();
-    let price = by_setting.rev().max_by_key(Vec::len).and_then(|prices| price_finding(&gathered(prices), goal.0));
+    let price = by_setting.rev().max_by_key(Vec::len).and_then(|prices| price_finding(&gathered(prices), goal));
     let table = Block::table("rmse-against-time", "Price of accuracy by schedule", &places)
         .column("schedule", |place| label(&place.key))
         .column("spp", |place| place.spp.to_string())
-        .told("median seconds", Decimals(4), |place| place.seconds)
+        .estimated("median seconds", Decimals(4), |place| place.seconds)
         .number("RMSE, linear", Decimals(5), |place| place.mse.sqrt())
         .number("MSE x seconds", Significant(4), |place| place.price())
         .end();

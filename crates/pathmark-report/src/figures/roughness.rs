@@ -5,17 +5,11 @@
 use super::prelude::*;
 use crate::reference_image::reference_image;
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct Options {
     /// The ending of the names of scenes whose directions follow the facets.
-    by_facets: String,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { by_facets: "-vndf".to_string() }
-    }
+    by_facets: Option<String>,
 }
 
 /// A scene sampled both ways, and the ratios of facets over cosine.
@@ -23,12 +17,12 @@ struct Pair<'a> {
     scene: &'a str,
     cosine: &'a [&'a Row],
     facets: &'a [&'a Row],
-    variance: Option<Told>,
-    time: Option<Told>,
+    variance: Option<Estimated>,
+    time: Option<Estimated>,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { by_facets } = options(results, "roughness")?;
+    let by_facets = options::<Options>(results, "roughness")?.by_facets.unwrap_or_else(|| "-vndf".to_string());
     let rows = results.by(|row| row.scene.as_str());
     let base = |scene: &'_ str| scene.strip_suffix(by_facets.as_str()).unwrap_or(scene).len();
     let scenes: BTreeSet<(usize, &str)> = rows.keys().map(|scene| (base(scene), &scene[..base(scene)])).collect();
@@ -51,7 +45,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         pairs.push(Pair { scene, cosine, facets, variance, time });
     }
     let mut blocks: Vec<Block> = sheet(results, &pairs)?.into_iter().collect();
-    let compared: Vec<(&str, Told, Told)> =
+    let compared: Vec<(&str, Estimated, Estimated)> =
         pairs.iter().filter_map(|pair| Some((pair.scene, pair.variance?, pair.time?))).collect();
     if !compared.is_empty() {
         blocks.push(Block::figure("roughness", plot(results, &compared)));
@@ -66,21 +60,21 @@ fn variance(row: &Row) -> Option<f64> {
     row.mse.filter(|mse| *mse > 0.0)
 }
 
-fn plot(results: &Results, compared: &[(&str, Told, Told)]) -> DotPlot {
+fn plot(results: &Results, compared: &[(&str, Estimated, Estimated)]) -> DotPlot {
     let rows = compared
         .iter()
-        .map(|(scene, variance, time)| PlotRow::new(*scene, vec![Some(variance.dot()), Some(time.dot())]));
+        .map(|(scene, variance, time)| DotRow::new(*scene, vec![Some(variance.dot()), Some(time.dot())]));
     let axis = Axis::log("by facets / by cosine, at equal samples").including([0.9, 1.1]);
     let plot = DotPlot::new("Directions by the facets against directions by the cosine", axis, rows.collect());
     let mut plot = plot.grouped(["variance of the image", "time"]);
     plot.guides = vec![(1.0, "the same".to_string())];
     plot.subtitle = results.machine_line();
-    let intervals = compared.iter().flat_map(|(_, variance, time)| [variance.interval, time.interval]).flatten();
-    plot.caption = format!("Median of ratios of runs with the same seed. Bars: {}.", confidence(intervals));
+    let bars = bars(compared.iter().flat_map(|(_, variance, time)| [*variance, *time]));
+    plot.caption = format!("Median of ratios of runs with the same seed. {bars}");
     plot
 }
 
-fn finding((scene, variance, time): &(&str, Told, Told)) -> Block {
+fn finding((scene, variance, time): &(&str, Estimated, Estimated)) -> Block {
     let words = |interval: Option<Interval>| interval.map_or("no interval".to_string(), |i| with_level(&i, 2));
     let verdict = match variance.interval {
         Some(interval) if interval.high < 1.0 => "the facets are the better guide",
@@ -103,9 +97,8 @@ fn table(pairs: &[Pair<'_>]) -> Block {
         [(pair.scene, cosine, pair.cosine), (pair.scene, "facets", pair.facets)]
     });
     let lines = ways.filter_map(|(scene, directions, rows)| {
-        let typical = |value: &dyn Fn(&Row) -> Option<f64>| typical(rows.iter().copied(), value);
-        let time = typical(&|row| Some(row.makespan_s? / row.paths? as f64 * 1e9))?;
-        Some((scene, directions, rows.len(), typical(&variance), time))
+        let time = typical(rows, |row| Some(row.makespan_s? / row.paths? as f64 * 1e9))?;
+        Some((scene, directions, rows.len(), typical(rows, variance), time))
     });
     // Monte Carlo efficiency: 1/(variance x time), with the time of a sample in microseconds.
     let efficiency = |variance: Option<f64>, time: f64| variance.map(|variance| 1.0 / (variance * time * 1e-3));

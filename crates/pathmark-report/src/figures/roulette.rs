@@ -13,12 +13,15 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             let same = |other: &&Contender| other.image == image && other.schedule == contender.schedule;
             let other = contenders.iter().find(same)?;
             // The yardstick's ratio to itself is exactly 1.
-            let gain =
-                if std::ptr::eq(contender, other) { Told::of(1.0, None) } else { Told::from(gain(contender, other)?) };
+            let gain = if std::ptr::eq(contender, other) {
+                Estimated::of(1.0, None)
+            } else {
+                Estimated::from(gain(contender, other)?)
+            };
             Some((contender, gain))
         })
     });
-    let mut compared: Vec<(&Contender, Told)> = compared.collect();
+    let mut compared: Vec<(&Contender, Estimated)> = compared.collect();
     compared.sort_by(|(a, _), (b, _)| place(a).partial_cmp(&place(b)).unwrap_or(Ordering::Equal));
     let Some((best, most)) = first_largest(&compared) else {
         let text = format!("There is no comparison of rules: it takes rows with {yardstick}.");
@@ -67,7 +70,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .number("variance of a sample", Decimals(4), |(contender, _)| variance(contender))
         .number("s per sample and pixel", Decimals(6), |(contender, _)| contender.renderer.seconds_per_spp.value)
         .number("rays per sample", Decimals(2), |(contender, _)| rays(contender))
-        .told("efficiency", Decimals(3), |(_, gain)| *gain)
+        .estimated("efficiency", Decimals(3), |(_, gain)| *gain)
         .end();
     Ok(vec![Block::figure("roulette", chart), Block::finding(finding), table])
 }
@@ -80,7 +83,7 @@ fn place(contender: &Contender) -> (&str, &str, &str, f64) {
 }
 
 /// The contender with the largest gain; of equal ones, the first.
-fn first_largest<'a>(compared: &[(&'a Contender, Told)]) -> Option<(&'a Contender, Told)> {
+fn first_largest<'a>(compared: &[(&'a Contender, Estimated)]) -> Option<(&'a Contender, Estimated)> {
     compared.iter().rev().max_by(|a, b| a.1.value.total_cmp(&b.1.value)).copied()
 }
 

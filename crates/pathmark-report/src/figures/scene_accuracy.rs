@@ -6,19 +6,13 @@ use crate::analysis::mean::t_interval;
 use crate::analysis::mse::over_seeds;
 use crate::analysis::rank::spearman;
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Options {
     /// Error at which prices are compared, relative to the mean radiance.
-    goal: Positive,
+    goal: Option<Positive>,
     /// The same box with three pairs of balls.
     control: Option<Control>,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { goal: Positive(0.01), control: None }
-    }
 }
 
 /// Scenes that differ only in the balls of one box.
@@ -45,7 +39,7 @@ struct Accuracy {
     /// Relative RMSE of each seed, without the scene.
     by_seed: Repeats,
     /// Root of the mean of their squares.
-    error: Told,
+    error: Estimated,
     rays: f64,
     /// CPU seconds of a sample.
     sample_s: f64,
@@ -71,7 +65,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut blocks = vec![Block::figure("scene-accuracy", chart(results, &scenes))];
     blocks.extend(claim(&scenes, control.as_ref()));
     blocks.extend(control.and_then(|control| controlled(&scenes, &control)));
-    blocks.push(table(&scenes, goal.0));
+    blocks.push(table(&scenes, goal.map_or(0.01, |goal| goal.0)));
     Ok(blocks)
 }
 
@@ -88,15 +82,15 @@ fn accuracies(results: &Results) -> Result<Vec<Accuracy>> {
         let mse = |row: &Row| Some(row.mse? / (radiance * radiance));
         let squares = Repeats::of_images(rows.iter().copied(), without_scene, mse).values();
         let interval = over_seeds(&squares, LEVEL).map(|error| error.rmse.interval);
-        let error = Told::of((squares.iter().sum::<f64>() / squares.len() as f64).sqrt(), interval);
+        let error = Estimated::of((squares.iter().sum::<f64>() / squares.len() as f64).sqrt(), interval);
         let series = results.series_name(first);
         let accuracy = Accuracy {
             name: if series.is_empty() { image.scene.clone() } else { series },
             radiance,
             by_seed: Repeats::of_images(rows.iter().copied(), without_scene, |row| Some(mse(row)?.sqrt())),
             error,
-            rays: typical(rows.iter().copied(), |row| Some(row.rays? as f64 / row.paths? as f64))?,
-            sample_s: typical(rows.iter().copied(), |row| Some(row.cpu_s()? / row.paths? as f64))?,
+            rays: typical(&rows, |row| Some(row.rays? as f64 / row.paths? as f64))?,
+            sample_s: typical(&rows, |row| Some(row.cpu_s()? / row.paths? as f64))?,
             pixels: f64::from(first.width) * f64::from(first.height),
             image,
         };
@@ -204,7 +198,7 @@ fn table(scenes: &[Accuracy], goal: f64) -> Block {
         .column("scene", |scene| scene.name.clone())
         .number("mean radiance", Decimals(4), |scene| scene.radiance)
         .number("RMSE, linear", Decimals(4), |scene| scene.error.value * scene.radiance)
-        .told("RMSE / mean radiance", Decimals(4), |scene| scene.error)
+        .estimated("RMSE / mean radiance", Decimals(4), |scene| scene.error)
         .column("seeds", |scene| scene.by_seed.values().len().to_string())
         .number("rays per sample", Decimals(2), |scene| scene.rays)
         .number("ns per sample", Decimals(0), |scene| scene.sample_s * 1e9)

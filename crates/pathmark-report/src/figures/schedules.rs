@@ -8,13 +8,7 @@ struct Line<'a> {
     first: &'a Row,
     rows: Vec<&'a Row>,
     times: Vec<f64>,
-    seconds: Told,
-}
-
-impl Line<'_> {
-    fn typical(&self, value: impl Fn(&Row) -> Option<f64>) -> Option<f64> {
-        typical(self.rows.iter().copied(), value)
-    }
+    seconds: Estimated,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
@@ -23,7 +17,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let lines = groups.into_iter().filter_map(|((series, ..), rows)| {
         let first = *rows.first()?;
         let image = if series.is_empty() { first.scene.clone() } else { series };
-        let times = values(rows.iter().copied(), |row| row.makespan_s);
+        let times = values(&rows, |row| row.makespan_s);
         Some(Line { image, first, seconds: results.median(&times)?, times, rows })
     });
     // A job's seconds include waiting for a processor, so with more workers than processors they do not show balance.
@@ -39,14 +33,18 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             .column("threads", |line| line.first.threads.to_string())
             .column("jobs", |line| line.first.jobs.to_string())
             .column("runs", |line| line.times.len().to_string())
-            .told("median seconds", Decimals(4), |line| line.seconds)
-            .number("CPU / wall", Decimals(2), |line| line.typical(|row| Some(row.cpu_s()? / row.makespan_s?)))
-            .number("load imbalance", Decimals(3), |line| line.typical(imbalance))
+            .estimated("median seconds", Decimals(4), |line| line.seconds)
+            .number("CPU / wall", Decimals(2), |line| typical(&line.rows, |row| Some(row.cpu_s()? / row.makespan_s?)))
+            .number("load imbalance", Decimals(3), |line| typical(&line.rows, imbalance))
             .number("longest job, ms", Decimals(1), |line| {
-                line.typical(|row| alone(row).and(Some(row.job_max_s? * 1e3)))
+                typical(&line.rows, |row| alone(row).and(Some(row.job_max_s? * 1e3)))
             })
-            .number("voluntary switches", Decimals(0), |line| line.typical(|row| Some(row.voluntary_switches? as f64)))
-            .number("forced switches", Decimals(0), |line| line.typical(|row| Some(row.involuntary_switches? as f64)))
+            .number("voluntary switches", Decimals(0), |line| {
+                typical(&line.rows, |row| Some(row.voluntary_switches? as f64))
+            })
+            .number("forced switches", Decimals(0), |line| {
+                typical(&line.rows, |row| Some(row.involuntary_switches? as f64))
+            })
             .end(),
     ])
 }

@@ -7,6 +7,7 @@ use crate::analysis::superlinear::{Evidence, cause};
 use crate::measure::Doubts;
 use crate::schedule::is_of_ranks;
 use crate::serial::Serial;
+use crate::words::hollow;
 
 /// A chart with more lines than this is unreadable, so strategies become named rows instead.
 const MOST_LINES: usize = 8;
@@ -76,7 +77,7 @@ impl Speedups<'_> {
         // Only a serial run on the same pieces differs from the schedule in nothing else.
         let fraction = |(schedule, speedup): &(&Schedule, Ratio), workers: usize| {
             let is_on_pieces = self.serial.pairs(schedule).iter().next().is_some();
-            serial_fraction_within(&speedup.estimate(), workers).filter(|_| is_on_pieces).map(Told::from)
+            serial_fraction_within(&speedup.estimate(), workers).filter(|_| is_on_pieces).map(Estimated::from)
         };
         let work_inflation = self.serial.work_inflation();
         let used = |schedule: &Schedule| self.in_use(schedule.key.threads);
@@ -85,12 +86,12 @@ impl Speedups<'_> {
             .column("strategy", |(schedule, _)| schedule.name.clone())
             .column("pieces", |(schedule, _)| schedule.key.decomposition.clone())
             .column("threads", |(schedule, _)| schedule.key.threads.to_string())
-            .told("speedup", Decimals(3), |(_, speedup)| Told::from(*speedup))
+            .estimated("speedup", Decimals(3), |(_, speedup)| Estimated::from(*speedup))
             .number("efficiency per thread", Decimals(3), |(s, speedup)| efficiency(speedup.value, s.key.threads))
             .number("efficiency per processor in use", Decimals(3), |(s, speedup)| efficiency(speedup.value, used(s)))
             .number("work inflation", Decimals(3), |(schedule, _)| work_inflation.get(schedule).copied())
-            .told("e, p = threads", Decimals(3), |own| fraction(own, own.0.key.threads))
-            .told("e, p = processors in use", Decimals(3), |own| fraction(own, used(own.0)))
+            .estimated("e, p = threads", Decimals(3), |own| fraction(own, own.0.key.threads))
+            .estimated("e, p = processors in use", Decimals(3), |own| fraction(own, used(own.0)))
             .column("remark", |(schedule, speedup)| self.remark(schedule, speedup))
             .end()
     }
@@ -129,13 +130,9 @@ impl Speedups<'_> {
         }
     }
 
-    /// The confidence of the drawn intervals.
-    fn confidence(&self) -> String {
-        confidence(self.all.iter().map(|(_, speedup)| speedup.interval))
-    }
-
-    fn hollow(&self) -> &'static str {
-        hollow(self.all.iter().map(|(_, speedup)| Told::from(*speedup)))
+    /// The sentences of a caption about bars and hollow marks.
+    fn bars(&self) -> String {
+        bars(self.all.iter().map(|(_, speedup)| *speedup))
     }
 
     fn is_usual(&self, schedule: &Schedule) -> bool {
@@ -153,10 +150,10 @@ impl Speedups<'_> {
             let line = (!self.is_usual(schedule), self.serial.line(schedule));
             let dots = rows.entry(line).or_insert_with(|| vec![None; threads.len() + 1]);
             let place = threads.iter().position(|threads| *threads == schedule.key.threads).unwrap_or(threads.len());
-            dots[place] = Some(Told::from(*speedup).times(value(1.0, schedule.key.threads)));
+            dots[place] = Some(Estimated::from(*speedup).times(value(1.0, schedule.key.threads)));
         }
         // Sorted by the value at the most threads, because readers look for it first. Partial values are not ranked.
-        let at_most = |dots: &[Option<Told>]| {
+        let at_most = |dots: &[Option<Estimated>]| {
             let mut all = dots.iter().flatten();
             let ranked = all.clone().rfind(|told| !told.is_partial);
             ranked.or_else(|| all.next_back()).map(|told| (told.is_partial, -told.value)).unwrap_or_default()
@@ -166,8 +163,8 @@ impl Speedups<'_> {
             let ((first_partial, first), (second_partial, second)) = (at_most(first), at_most(second));
             (a, first_partial).cmp(&(b, second_partial)).then(first.total_cmp(&second))
         });
-        let dots = |dots: Vec<Option<Told>>| dots.into_iter().map(|told| Some(told?.dot())).collect();
-        let rows: Vec<PlotRow> = rows.into_iter().map(|((_, name), own)| PlotRow::new(name, dots(own))).collect();
+        let dots = |dots: Vec<Option<Estimated>>| dots.into_iter().map(|told| Some(told?.dot())).collect();
+        let rows: Vec<DotRow> = rows.into_iter().map(|((_, name), own)| DotRow::new(name, dots(own))).collect();
         let workers = if self.all.iter().any(|(schedule, _)| is_of_ranks(&schedule.name)) {
             ["worker", "workers"]
         } else {
@@ -181,7 +178,7 @@ impl Speedups<'_> {
         let mut plot = DotPlot::new(title, Axis::linear(axis).including([0.9]), rows).grouped(names);
         plot.guides = vec![(1.0, guide.to_string())];
         plot.subtitle = self.results.workload();
-        plot.caption = format!("Median of ratios within a repetition. Bars: {}.{}", self.confidence(), self.hollow());
+        plot.caption = ratio_bars(self.all.iter().map(|(_, speedup)| *speedup));
         plot
     }
 
@@ -190,7 +187,7 @@ impl Speedups<'_> {
         let mut lines: BTreeMap<String, Vec<_>> = BTreeMap::new();
         for (schedule, speedup) in self.all.iter().filter(|(schedule, _)| !self.has_a_thread_per_job(schedule)) {
             let threads = schedule.key.threads;
-            let point = Told::from(*speedup).times(value(1.0, threads)).above(threads as f64);
+            let point = Estimated::from(*speedup).times(value(1.0, threads)).above(threads as f64);
             lines.entry(self.serial.line(schedule)).or_default().push(point);
         }
         Series::by_name(lines)
@@ -213,13 +210,14 @@ impl Speedups<'_> {
         let y = Axis::linear("speedup against serial").including([0.0, processors.max(1.0) * 1.25]);
         let has_level = self.all.iter().any(|(schedule, _)| self.has_a_thread_per_job(schedule));
         let level = if has_level { " Level: a thread for each job, whatever is asked for." } else { "" };
-        let caption =
-            &format!("Median of ratios within a repetition. Bars: {}.{level}{}", self.confidence(), self.hollow());
+        let (bars, hollow) = (self.bars(), hollow(self.all.iter().map(|(_, speedup)| Estimated::from(*speedup))));
+        let bars = bars.trim_end_matches(hollow);
+        let caption = &format!("Median of ratios within a repetition. {bars}{level}{hollow}");
         let mut chart = self.chart("Speedup against threads", y, self.series(&|speedup, _| speedup), caption);
         let ticks: BTreeSet<usize> =
             chart.series.iter().flat_map(|series| &series.points).map(|point| point.x as usize).collect();
         for (schedule, speedup) in self.all.iter().filter(|(schedule, _)| self.has_a_thread_per_job(schedule)) {
-            let points = ticks.iter().map(|threads| Told::from(*speedup).above(*threads as f64)).collect();
+            let points = ticks.iter().map(|threads| Estimated::from(*speedup).above(*threads as f64)).collect();
             let name = format!("{}: always {}", schedule.name, schedule.key.threads);
             chart.series.push(Series::new(name, crate::plot::style::Look::nth(chart.series.len()), points));
         }
@@ -248,8 +246,7 @@ impl Speedups<'_> {
 
     fn efficiency_chart(&self, per_processor: &dyn Fn(f64, usize) -> f64) -> LineChart {
         let y = Axis::linear("speedup per processor in use").including([0.5, 1.05]);
-        let (bars, hollow) = (self.confidence(), self.hollow());
-        let caption = &format!("Processors in use: the smaller of threads and processors. Bars: {bars}.{hollow}");
+        let caption = &format!("Processors in use: the smaller of threads and processors. {}", self.bars());
         let mut chart = self.chart("Efficiency against threads", y, self.series(per_processor), caption);
         chart.overlays = vec![Overlay::guide("ideal: 1", Curve::Line { intercept: 1.0, slope: 0.0 })];
         chart
@@ -266,7 +263,7 @@ impl Speedups<'_> {
         for (other, _) in candidates().filter(|(other, _)| other != best) {
             let rows = |schedule: &Schedule| self.serial.rows(schedule).iter().copied();
             if let Some(ratio) = time_ratio(rows(other), rows(best), any_schedule, self.results.stopping())? {
-                let text = format!("{} ({})", other.name, told(&ratio, 3));
+                let text = format!("{} ({})", other.name, ratio.in_words(3));
                 if ratio.interval.low > 1.0 { slower.push(text) } else { open.push(text) }
             }
         }

@@ -10,14 +10,14 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let image = results.image_name(row);
         if several { format!("{image}, {}", row.schedule.label()) } else { image }
     });
-    let (mut overlays, mut findings, mut series, mut intervals) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut overlays, mut findings, mut series, mut all) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (name, rows) in lines {
         let cells = group(rows, |row| row.spp).into_iter();
         let cells = cells.map(|(spp, rows)| (spp, Repeats::of_rows(rows, |row| row.makespan_s)));
         // The fit compares them, so all come from the same repetitions.
         let times = in_common(cells.collect()).into_iter().filter_map(|(spp, seconds)| {
             let seconds = results.median(&seconds)?;
-            intervals.extend(seconds.interval);
+            all.push(seconds);
             Some(seconds.above(f64::from(spp)))
         });
         let points: Vec<_> = times.collect();
@@ -63,7 +63,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         series,
     );
     chart.subtitle = results.workload();
-    chart.caption = format!("Points: median over seeds and repetitions. Bars: {}.", confidence(intervals));
+    chart.caption = format!("Points: median over seeds and repetitions. {}", bars(all));
     chart.overlays = overlays;
     Ok([Block::figure("time-against-spp", chart)].into_iter().chain(findings).collect())
 }

@@ -11,7 +11,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let lines = gathered(
         speedups
             .iter()
-            .map(|(schedule, speedup)| (&schedule.name, Told::from(*speedup).above(schedule.key.threads as f64))),
+            .map(|(schedule, speedup)| (&schedule.name, Estimated::from(*speedup).above(schedule.key.threads as f64))),
     );
     let mut chart = LineChart::new(
         "Weak scaling: scaled speedup against threads",
@@ -20,9 +20,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         Series::by_name(lines),
     );
     chart.subtitle = results.workload();
-    let intervals = speedups.iter().map(|(_, speedup)| speedup.interval);
-    let hollow = hollow(speedups.iter().map(|(_, speedup)| Told::from(*speedup)));
-    chart.caption = format!("Median of ratios within a repetition. Bars: {}.{hollow}", confidence(intervals));
+    chart.caption = ratio_bars(speedups.iter().map(|(_, speedup)| *speedup));
     chart.overlays = vec![Overlay::guide("ideal: one per thread", Curve::Line { intercept: 0.0, slope: 1.0 })];
     chart.dodge = 6.0;
     Ok(vec![Block::figure("weak-scaling", chart), scaling_laws::table(results, &[Law::Gustafson], "gustafson")?])

@@ -2,15 +2,13 @@
 //!
 //! PNG only, because readers look at the pixels.
 
-use std::path::Path;
-
 use image::RgbImage;
 use image::imageops;
 use serde::Serialize;
 
 use super::drawing::{Align, Drawing};
 use super::style::{INK, LEADING, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
-use super::{colour_bar, font, heading, number, paint, save_bytes};
+use super::{colour_bar, font, heading, number, paint};
 use crate::error::{Error, Result};
 use crate::image_io::Image;
 use crate::image_io::tone_map::quantise_image;
@@ -150,11 +148,6 @@ impl ContactSheet {
     pub fn png(&self) -> Result<(Vec<u8>, Vec<Placed>)> {
         let (sheet, placed) = self.pixels()?;
         Ok((paint::png(&sheet)?, placed))
-    }
-
-    /// Writes `stem.png` into `dir`, which is created if needed.
-    pub fn save(&self, dir: &Path, stem: &str) -> Result<()> {
-        save_bytes(dir, &format!("{stem}.png"), &self.png()?.0)
     }
 }
 

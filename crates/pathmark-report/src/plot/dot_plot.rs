@@ -6,7 +6,7 @@ use super::Figure;
 use super::axis::{Axis, Range};
 use super::drawing::{Align, Drawing, Note, PartKind, Place};
 use super::frame::WIDTH;
-use super::legend::{self, Entry, Sample};
+use super::legend::{self, LegendEntry, Sample};
 use super::number::{between, short};
 use super::ruler::{self, GAP, TICK};
 use super::style::{DASHES, FAINT, HAIRLINE, INK, LEADING, Look, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
@@ -43,14 +43,14 @@ impl Dot {
 
 /// A row.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct DotRow {
     /// Its name, at its left.
     pub name: String,
     /// Its dots, in the order of the groups; `None` if nothing was measured.
     pub dots: Vec<Option<Dot>>,
 }
 
-impl Row {
+impl DotRow {
     /// A row.
     pub fn new(name: impl Into<String>, dots: Vec<Option<Dot>>) -> Self {
         Self { name: name.into(), dots }
@@ -80,14 +80,14 @@ pub struct DotPlot {
     /// The groups. A single one has no entry in the legend.
     pub groups: Vec<Group>,
     /// The rows, the first at the top.
-    pub rows: Vec<Row>,
+    pub rows: Vec<DotRow>,
     /// Vertical lines, such as one at a ratio of 1, each with its name in the legend.
     pub guides: Vec<(f64, String)>,
 }
 
 impl DotPlot {
     /// A plot of `rows` with one group.
-    pub fn new(title: impl Into<String>, axis: Axis, rows: Vec<Row>) -> Self {
+    pub fn new(title: impl Into<String>, axis: Axis, rows: Vec<DotRow>) -> Self {
         let groups = vec![Group { name: String::new(), look: Look::nth(0) }];
         let (subtitle, caption) = (String::new(), String::new());
         Self { title: title.into(), subtitle, caption, axis, groups, rows, guides: Vec::new() }
@@ -102,7 +102,7 @@ impl DotPlot {
     }
 
     /// The dots of a row, each with the index of its group.
-    fn dots<'a>(&self, row: &'a Row) -> impl Iterator<Item = (usize, &'a Dot)> + use<'a> {
+    fn dots<'a>(&self, row: &'a DotRow) -> impl Iterator<Item = (usize, &'a Dot)> + use<'a> {
         row.dots.iter().take(self.groups.len()).enumerate().filter_map(|(group, dot)| Some((group, dot.as_ref()?)))
     }
 
@@ -116,11 +116,11 @@ impl DotPlot {
         Range::of(&guided, values)
     }
 
-    fn entries(&self) -> Vec<Entry> {
+    fn entries(&self) -> Vec<LegendEntry> {
         let groups = self.groups.iter().filter(|_| self.groups.len() > 1);
-        let dots = groups.map(|group| Entry::new(Sample::Series { look: group.look, line: false }, &group.name));
+        let dots = groups.map(|group| LegendEntry::new(Sample::Series { look: group.look, line: false }, &group.name));
         let guides = self.guides.iter().enumerate().map(|(index, (_, name))| {
-            Entry::new(Sample::Line { colour: MUTED, dash: DASHES[1 + index % 2], width: GUIDE }, name)
+            LegendEntry::new(Sample::Line { colour: MUTED, dash: DASHES[1 + index % 2], width: GUIDE }, name)
         });
         dots.chain(guides).collect()
     }
@@ -129,7 +129,7 @@ impl DotPlot {
     fn draw_row(
         &self,
         drawing: &mut Drawing,
-        row: &Row,
+        row: &DotRow,
         range: &Range,
         (left, right): (f64, f64),
         middle: f64,
@@ -163,7 +163,7 @@ impl DotPlot {
     }
 }
 
-fn note(row: &Row, group: &str, dot: &Dot, at: Place) -> Note {
+fn note(row: &DotRow, group: &str, dot: &Dot, at: Place) -> Note {
     let of_group = if group.is_empty() { String::new() } else { format!(", {group}") };
     let text = format!("{}{of_group}: {}{}", row.name, short(dot.value, 4), between(dot.interval, 4));
     let (series, of) = (group.to_string(), row.name.clone());
@@ -180,7 +180,7 @@ impl Figure for DotPlot {
         let legend = legend::size(&entries);
         let left = MARGIN + widest + GAP;
         let right = WIDTH - MARGIN - if legend.0 > 0.0 { legend.0 + 20.0 } else { 0.0 };
-        let height = |(row, name): (&Row, &Vec<String>)| {
+        let height = |(row, name): (&DotRow, &Vec<String>)| {
             let dots = ROW + GROUP * self.dots(row).count().saturating_sub(1) as f64;
             dots.max(name.len() as f64 * SMALL_SIZE * LEADING + 6.0)
         };

@@ -39,13 +39,13 @@ pub enum Sample {
 
 /// One entry of a legend.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Entry {
+pub struct LegendEntry {
     sample: Sample,
     name: String,
     lines: Vec<String>,
 }
 
-impl Entry {
+impl LegendEntry {
     /// An entry whose text is broken to fit the column.
     pub fn new(sample: Sample, text: &str) -> Self {
         Self::of(sample, text, text)
@@ -58,18 +58,18 @@ impl Entry {
 }
 
 /// Width and height of the column; zero for no entries.
-pub fn size(entries: &[Entry]) -> (f64, f64) {
+pub fn size(entries: &[LegendEntry]) -> (f64, f64) {
     let widest = entries.iter().flat_map(|entry| &entry.lines).map(|line| font::width(line, SMALL_SIZE));
     let Some(text) = widest.reduce(f64::max) else { return (0.0, 0.0) };
     (SAMPLE + GAP + SLACK * text, entries.iter().map(entry_height).sum())
 }
 
-fn entry_height(entry: &Entry) -> f64 {
+fn entry_height(entry: &LegendEntry) -> f64 {
     entry.lines.len() as f64 * SMALL_SIZE * LEADING + SPACING
 }
 
 /// Draws the column with its upper left corner at a position.
-pub fn draw(drawing: &mut Drawing, entries: &[Entry], (x, mut y): Place) {
+pub fn draw(drawing: &mut Drawing, entries: &[LegendEntry], (x, mut y): Place) {
     for entry in entries {
         let middle = y + 0.5 * SMALL_SIZE * LEADING;
         let ends = [(x, middle), (x + SAMPLE, middle)];
@@ -99,7 +99,7 @@ mod tests {
     #[test]
     fn column_holds_its_entries() {
         let sample = Sample::Series { look: Look::nth(0), line: true };
-        let entries = [Entry::new(sample, "rayon"), Entry::new(sample, &"many words ".repeat(12))];
+        let entries = [LegendEntry::new(sample, "rayon"), LegendEntry::new(sample, &"many words ".repeat(12))];
         let (width, height) = size(&entries);
         let mut drawing = Drawing::new("t", 500.0, 500.0);
         draw(&mut drawing, &entries, (100.0, 50.0));

@@ -4,7 +4,7 @@ use super::Figure;
 use super::axis::{Axis, Range, Scale, Ticks};
 use super::drawing::{Align, Drawing, Note, PartKind, Place};
 use super::frame::{self, Frame, Words};
-use super::legend::{self, Entry, Sample};
+use super::legend::{self, LegendEntry, Sample};
 use super::marker;
 use super::number::{between, short};
 use super::overlay::{Overlay, OverlayKind, inside};
@@ -180,17 +180,17 @@ impl LineChart {
         self.series.iter().zip(first_alike).filter(move |(_, first)| **first == index).map(|(series, _)| series)
     }
 
-    fn entries(&self, first_alike: &[usize]) -> Vec<Entry> {
+    fn entries(&self, first_alike: &[usize]) -> Vec<LegendEntry> {
         let own = self.series.iter().enumerate().filter(|(index, _)| first_alike[*index] == *index);
         let series = own.map(|(index, series)| {
             let sample = Sample::Series { look: series.look, line: series.line };
             let names: Vec<&str> = self.alike(first_alike, index).map(|series| series.name.as_str()).collect();
             let note = if series.points.is_empty() { " (no data)" } else { "" };
-            Entry::of(sample, &series.name, &format!("{}{note}", names.join(" = ")))
+            LegendEntry::of(sample, &series.name, &format!("{}{note}", names.join(" = ")))
         });
         let overlays = self.overlays.iter().enumerate().map(|(index, overlay)| {
             let (colour, dash) = self.stroke(index, overlay.kind);
-            Entry::new(Sample::Line { colour, dash, width: FIT_LINE }, &overlay.label)
+            LegendEntry::new(Sample::Line { colour, dash, width: FIT_LINE }, &overlay.label)
         });
         series.chain(overlays).collect()
     }

@@ -36,7 +36,7 @@ use crate::error::{Error, Result};
 
 pub use axis::{Axis, Scale, Ticks};
 pub use contact_sheet::{Cell, ColourBar, Comparison, ContactSheet, Placed};
-pub use dot_plot::{Dot, DotPlot, Group, Row};
+pub use dot_plot::{Dot, DotPlot, DotRow, Group};
 pub use drawing::Drawing;
 pub use gantt::{GanttChart, JobBar, Schedule, Shade};
 pub use heat_map::{HeatMap, HeatPanel, Tile};

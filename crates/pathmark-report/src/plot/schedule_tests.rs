@@ -4,7 +4,7 @@ use super::drawing::Mark;
 use super::style::Look;
 use super::tests::{assert_legible, says};
 use super::{
-    Axis, Dot, DotPlot, Drawing, Figure, GanttChart, Group, HeatMap, HeatPanel, JobBar, Row, Schedule, Shade, Tile,
+    Axis, Dot, DotPlot, DotRow, Drawing, Figure, GanttChart, Group, HeatMap, HeatPanel, JobBar, Schedule, Shade, Tile,
     paint,
 };
 
@@ -56,7 +56,7 @@ fn dots(rows: usize, groups: usize, axis: Axis) -> DotPlot {
     let dot =
         |i: usize| Some(Dot::new(1e-7 * (i + 1) as f64, Some((0.8e-7 * (i + 1) as f64, 1.3e-7 * (i + 1) as f64))));
     let rows = (0..rows)
-        .map(|i| Row { name: format!("strategy-number-{i}"), dots: (0..groups).map(|g| dot(i + g)).collect() });
+        .map(|i| DotRow { name: format!("strategy-number-{i}"), dots: (0..groups).map(|g| dot(i + g)).collect() });
     let mut plot = DotPlot::new("Overhead of a job", axis, rows.collect());
     let group = |g: usize| Group { name: format!("{} threads", g + 1), look: Look::nth(g) };
     plot.groups = (0..groups).map(group).collect();

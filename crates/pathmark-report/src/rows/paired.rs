@@ -5,12 +5,13 @@
 //! therefore affects both equally, and no image size enters a ratio. Medians of several cells are compared only over
 //! repetitions that these cells share.
 
-use super::rows::Row;
-use super::words::Told;
 use crate::analysis::confidence_sequence::Stopping;
 use crate::analysis::{Estimate, Interval};
 use crate::error::{InputError, Result};
+use crate::estimated::Estimated;
 use crate::measure::{ImageKey, ScheduleKey};
+use crate::rows::Row;
+use crate::words::with_level;
 use std::cmp::Ordering;
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
@@ -20,16 +21,16 @@ use std::collections::{BTreeMap, BTreeSet};
 type Shared = (ImageKey, ScheduleKey, u32);
 
 /// Clears the axes in which the rows of a pair may differ.
-pub(super) type Forget = fn(&mut ImageKey, &mut ScheduleKey);
+pub(crate) type Forget = fn(&mut ImageKey, &mut ScheduleKey);
 
 /// Forgets the whole schedule: the rows of a pair render the same image in any way.
-pub(super) fn any_schedule(_: &mut ImageKey, schedule: &mut ScheduleKey) {
+pub(crate) fn any_schedule(_: &mut ImageKey, schedule: &mut ScheduleKey) {
     *schedule = ScheduleKey::default();
 }
 
 /// Items by a key that identifies them. `of_two` is the error about two items with one key: one of them would be lost
 /// silently.
-pub(super) fn identified<K: Ord, T: Copy>(
+pub(crate) fn identified<K: Ord, T: Copy>(
     items: impl IntoIterator<Item = (K, T)>,
     of_two: impl Fn(T, T) -> InputError,
 ) -> Result<BTreeMap<K, T>> {
@@ -44,7 +45,7 @@ pub(super) fn identified<K: Ord, T: Copy>(
 }
 
 /// Ratios of a value between items of two lists that share a key. The key identifies the items of the second list.
-pub(super) fn ratios_by<K: Ord, T: Copy>(
+pub(crate) fn ratios_by<K: Ord, T: Copy>(
     above: impl IntoIterator<Item = (K, T)>,
     below: impl IntoIterator<Item = (K, T)>,
     of_two: impl Fn(T, T) -> InputError,
@@ -56,20 +57,20 @@ pub(super) fn ratios_by<K: Ord, T: Copy>(
 }
 
 /// Rows to compare others with, by what a pair shares.
-pub(super) struct Partners<'a> {
+pub(crate) struct Partners<'a> {
     forget: Forget,
     rows: BTreeMap<Shared, &'a Row>,
 }
 
 impl<'a> Partners<'a> {
     /// Rows that the key identifies.
-    pub(super) fn of(rows: impl IntoIterator<Item = &'a Row>, forget: Forget) -> Result<Self> {
+    pub(crate) fn of(rows: impl IntoIterator<Item = &'a Row>, forget: Forget) -> Result<Self> {
         let rows = identified(rows.into_iter().map(|row| (row.key(forget), row)), alike)?;
         Ok(Self { forget, rows })
     }
 
     /// Of the rows with one key, the fastest.
-    pub(super) fn fastest(rows: impl IntoIterator<Item = &'a Row>, forget: Forget) -> Self {
+    pub(crate) fn fastest(rows: impl IntoIterator<Item = &'a Row>, forget: Forget) -> Self {
         let mut found: BTreeMap<Shared, &Row> = BTreeMap::new();
         for row in rows.into_iter().filter(|row| row.makespan_s.is_some()) {
             let best = found.entry(row.key(forget)).or_insert(row);
@@ -81,7 +82,7 @@ impl<'a> Partners<'a> {
     }
 
     /// Rows with their partners, in the order of the rows; leaves out rows without one.
-    pub(super) fn pairs<'b>(&self, rows: impl IntoIterator<Item = &'b Row>) -> Pairs<'b>
+    pub(crate) fn pairs<'b>(&self, rows: impl IntoIterator<Item = &'b Row>) -> Pairs<'b>
     where
         'a: 'b,
     {
@@ -96,37 +97,37 @@ fn alike(row: &Row, other: &Row) -> InputError {
 }
 
 /// Rows, each with its partner.
-pub(super) struct Pairs<'a>(Vec<(&'a Row, &'a Row)>);
+pub(crate) struct Pairs<'a>(Vec<(&'a Row, &'a Row)>);
 
 impl<'a> Pairs<'a> {
-    pub(super) fn iter(&self) -> impl Iterator<Item = (&'a Row, &'a Row)> + '_ {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (&'a Row, &'a Row)> + '_ {
         self.0.iter().copied()
     }
 
     /// A value of each row and its partner.
-    pub(super) fn values(&self, value: impl Fn(&Row, &Row) -> Option<f64>) -> Repeats {
+    pub(crate) fn values(&self, value: impl Fn(&Row, &Row) -> Option<f64>) -> Repeats {
         let values = self.iter().filter_map(|(own, partner)| Some((own.key(|_, _| ()), value(own, partner)?)));
         Repeats(values.collect())
     }
 
     /// The partner's value over the row's own.
-    pub(super) fn gains(&self, value: impl Fn(&Row) -> Option<f64>) -> Repeats {
+    pub(crate) fn gains(&self, value: impl Fn(&Row) -> Option<f64>) -> Repeats {
         self.values(|own, partner| Some(value(partner)? / value(own)?))
     }
 
     /// The row's value over its partner's.
-    pub(super) fn costs(&self, value: impl Fn(&Row) -> Option<f64>) -> Repeats {
+    pub(crate) fn costs(&self, value: impl Fn(&Row) -> Option<f64>) -> Repeats {
         self.values(|own, partner| Some(value(own)? / value(partner)?))
     }
 }
 
 /// Values of a cell, or ratios of two, by image and repetition.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Repeats(BTreeMap<Shared, f64>);
+pub(crate) struct Repeats(BTreeMap<Shared, f64>);
 
 impl Repeats {
     /// A value of each row. Rows that share what the comparison keeps are an error.
-    pub(super) fn of<'a>(
+    pub(crate) fn of<'a>(
         rows: impl IntoIterator<Item = &'a Row>,
         forget: Forget,
         value: impl Fn(&Row) -> Option<f64>,
@@ -136,12 +137,12 @@ impl Repeats {
     }
 
     /// A value of each row, by its own image, schedule and repetition.
-    pub(super) fn of_rows<'a>(rows: impl IntoIterator<Item = &'a Row>, value: impl Fn(&Row) -> Option<f64>) -> Self {
+    pub(crate) fn of_rows<'a>(rows: impl IntoIterator<Item = &'a Row>, value: impl Fn(&Row) -> Option<f64>) -> Self {
         Self(rows.into_iter().filter_map(|row| Some((row.key(|_, _| ()), value(row)?))).collect())
     }
 
     /// The mean value of the rows that share a key.
-    pub(super) fn means<'a>(
+    pub(crate) fn means<'a>(
         rows: impl IntoIterator<Item = &'a Row>,
         forget: Forget,
         value: impl Fn(&Row) -> Option<f64>,
@@ -155,7 +156,7 @@ impl Repeats {
     }
 
     /// A value of each image, which all schedules and repetitions share.
-    pub(super) fn of_images<'a>(
+    pub(crate) fn of_images<'a>(
         rows: impl IntoIterator<Item = &'a Row>,
         forget: fn(&mut ImageKey),
         value: impl Fn(&Row) -> Option<f64>,
@@ -169,12 +170,12 @@ impl Repeats {
     }
 
     /// The ratios of two values with the same key.
-    pub(super) fn over(&self, below: &Self) -> Self {
+    pub(crate) fn over(&self, below: &Self) -> Self {
         self.with(below, |above, below| above / below)
     }
 
     /// The differences of two values with the same key.
-    pub(super) fn minus(&self, other: &Self) -> Self {
+    pub(crate) fn minus(&self, other: &Self) -> Self {
         self.with(other, |own, other| own - other)
     }
 
@@ -183,17 +184,17 @@ impl Repeats {
         Self(pairs.collect())
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    pub(super) fn values(&self) -> Vec<f64> {
+    pub(crate) fn values(&self) -> Vec<f64> {
         self.0.values().copied().collect()
     }
 
     /// The median over all repetitions of this cell.
-    pub(super) fn median(&self, stopping: Stopping) -> Option<Told> {
-        Told::median(&self.values(), stopping)
+    pub(crate) fn median(&self, stopping: Stopping) -> Option<Estimated> {
+        Estimated::median(&self.values(), stopping)
     }
 
     /// The images, without their seeds: values of other images are not compared with these.
@@ -203,7 +204,7 @@ impl Repeats {
 }
 
 /// Ratios of a value between rows of one kind and rows of another that agree in what `forget` leaves.
-pub(super) fn ratios<'a>(
+pub(crate) fn ratios<'a>(
     above: impl IntoIterator<Item = &'a Row>,
     below: impl IntoIterator<Item = &'a Row>,
     forget: Forget,
@@ -213,7 +214,7 @@ pub(super) fn ratios<'a>(
 }
 
 /// How many times as long rows of one kind take as rows of another: the median of the ratios.
-pub(super) fn time_ratio<'a>(
+pub(crate) fn time_ratio<'a>(
     above: impl IntoIterator<Item = &'a Row>,
     below: impl IntoIterator<Item = &'a Row>,
     forget: Forget,
@@ -222,40 +223,59 @@ pub(super) fn time_ratio<'a>(
     Ok(ratios(above, below, forget, |row| row.makespan_s)?.median(stopping).and_then(Ratio::of))
 }
 
+/// How many times as long the first rows of each cell take as the second, over repetitions that the cells share.
+pub(crate) fn time_ratios<'a, T>(
+    cells: impl IntoIterator<Item = (T, &'a [&'a Row], &'a [&'a Row])>,
+    forget: Forget,
+    stopping: Stopping,
+) -> Result<Vec<(T, Ratio)>> {
+    let ratio = |(thing, above, below): (T, &[&'a Row], &[&'a Row])| {
+        let (above, below) = (above.iter().copied(), below.iter().copied());
+        Ok((thing, ratios(above, below, forget, |row| row.makespan_s)?))
+    };
+    let cells = cells.into_iter().map(ratio).collect::<Result<Vec<_>>>()?;
+    Ok(estimates(cells, stopping))
+}
+
 /// A median ratio with its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Ratio {
-    pub(super) value: f64,
-    pub(super) interval: Interval,
+pub(crate) struct Ratio {
+    pub(crate) value: f64,
+    pub(crate) interval: Interval,
     /// The number of ratios.
-    pub(super) count: Option<usize>,
+    pub(crate) count: Option<usize>,
     /// Whether it lacks repetitions that the ratios beside it have. Such a ratio is drawn hollow and never ranked.
-    pub(super) is_partial: bool,
+    pub(crate) is_partial: bool,
 }
 
 impl Ratio {
     /// `None` without an interval.
-    pub(super) fn of(told: Told) -> Option<Self> {
-        let Told { value, interval, count, is_partial } = told;
+    pub(crate) fn of(told: Estimated) -> Option<Self> {
+        let Estimated { value, interval, count, is_partial } = told;
         Some(Self { value, interval: interval?, count, is_partial })
     }
 
-    pub(super) fn estimate(&self) -> Estimate {
+    pub(crate) fn estimate(&self) -> Estimate {
         Estimate { value: self.value, interval: self.interval }
     }
 
+    /// The ratio, its interval and the interval's confidence.
+    pub(crate) fn in_words(&self, digits: usize) -> String {
+        format!("{:.digits$}, {}", self.value, with_level(&self.interval, digits))
+    }
+
     /// The order from the smallest ratio to the largest; partial ones follow all others, because they are not ranked.
-    pub(super) fn rising(&self, other: &Self) -> Ordering {
+    pub(crate) fn rising(&self, other: &Self) -> Ordering {
         self.is_partial.cmp(&other.is_partial).then(self.value.total_cmp(&other.value))
     }
 
     /// The order from the largest ratio to the smallest, and then the partial ones.
-    pub(super) fn falling(&self, other: &Self) -> Ordering {
+    pub(crate) fn falling(&self, other: &Self) -> Ordering {
         self.is_partial.cmp(&other.is_partial).then(other.value.total_cmp(&self.value))
     }
 }
 
-impl From<Ratio> for Told {
+impl From<Ratio> for Estimated {
     fn from(Ratio { value, interval, count, is_partial }: Ratio) -> Self {
         Self { value, interval: Some(interval), count, is_partial }
     }
@@ -264,7 +284,7 @@ impl From<Ratio> for Told {
 /// The medians of several cells. Cells of the same images are compared over repetitions that they share: either those
 /// of one cell, or those that all cells of the most repetitions have. Of these choices the one counts that gives the
 /// most values in cells without a gap. A cell that lacks one of these repetitions is partial.
-pub(super) fn medians<T>(cells: impl IntoIterator<Item = (T, Repeats)>, stopping: Stopping) -> Vec<(T, Told)> {
+pub(crate) fn medians<T>(cells: impl IntoIterator<Item = (T, Repeats)>, stopping: Stopping) -> Vec<(T, Estimated)> {
     let cells: Vec<(T, Repeats)> = cells.into_iter().collect();
     let alone: Vec<usize> = (0..cells.len()).collect();
     compared(cells, &alone, stopping)
@@ -272,32 +292,32 @@ pub(super) fn medians<T>(cells: impl IntoIterator<Item = (T, Repeats)>, stopping
 
 /// The medians of the points of several lines. The points of a line are compared as cells of the same images are, even
 /// if each has an image of its own; repetitions of two images then correspond if they have one seed and one number.
-pub(super) fn along<T, L: Ord>(
+pub(crate) fn along<T, L: Ord>(
     cells: impl IntoIterator<Item = (T, Repeats)>,
     line: impl Fn(&T) -> L,
     stopping: Stopping,
-) -> Vec<(T, Told)> {
+) -> Vec<(T, Estimated)> {
     let cells: Vec<(T, Repeats)> = cells.into_iter().collect();
     let lines: Vec<L> = cells.iter().map(|(thing, _)| line(thing)).collect();
     compared(cells, &lines, stopping)
 }
 
 /// The medians that have an interval.
-pub(super) fn estimates<T>(cells: impl IntoIterator<Item = (T, Repeats)>, stopping: Stopping) -> Vec<(T, Ratio)> {
+pub(crate) fn estimates<T>(cells: impl IntoIterator<Item = (T, Repeats)>, stopping: Stopping) -> Vec<(T, Ratio)> {
     with_intervals(medians(cells, stopping))
 }
 
 /// Those with an interval.
-pub(super) fn with_intervals<T>(told: Vec<(T, Told)>) -> Vec<(T, Ratio)> {
+pub(crate) fn with_intervals<T>(told: Vec<(T, Estimated)>) -> Vec<(T, Ratio)> {
     told.into_iter().filter_map(|(thing, told)| Some((thing, Ratio::of(told)?))).collect()
 }
 
 /// A repetition of an image, or of all images with this seed.
 type Place = (ImageKey, u32);
 
-fn compared<T, L: Ord>(cells: Vec<(T, Repeats)>, lines: &[L], stopping: Stopping) -> Vec<(T, Told)> {
+fn compared<T, L: Ord>(cells: Vec<(T, Repeats)>, lines: &[L], stopping: Stopping) -> Vec<(T, Estimated)> {
     let images: Vec<BTreeSet<ImageKey>> = cells.iter().map(|(_, repeats)| repeats.images()).collect();
-    let mut found: Vec<Option<Told>> = vec![None; cells.len()];
+    let mut found: Vec<Option<Estimated>> = vec![None; cells.len()];
     for indices in peers(&images, lines) {
         let is_of_one = indices.iter().all(|index| images[*index] == images[indices[0]]);
         let place = |(image, _, repetition): &Shared| {
@@ -316,8 +336,8 @@ fn compared<T, L: Ord>(cells: Vec<(T, Repeats)>, lines: &[L], stopping: Stopping
         for (index, own) in indices.iter().zip(&places) {
             let is_partial = !block.is_subset(own);
             let values = cells[*index].1.0.iter().filter(|(key, _)| is_partial || block.contains(&place(key)));
-            let told = Told::median(&values.map(|(_, value)| *value).collect::<Vec<f64>>(), stopping);
-            found[*index] = told.map(|told| Told { is_partial, ..told });
+            let told = Estimated::median(&values.map(|(_, value)| *value).collect::<Vec<f64>>(), stopping);
+            found[*index] = told.map(|told| Estimated { is_partial, ..told });
         }
     }
     cells.into_iter().zip(found).filter_map(|((thing, _), told)| Some((thing, told?))).collect()
@@ -377,7 +397,7 @@ fn common(places: &[BTreeSet<Place>]) -> BTreeSet<Place> {
 }
 
 /// The values of cells in the seeds and repetitions that all of them have, for one fit through all of them.
-pub(super) fn in_common<T>(cells: Vec<(T, Repeats)>) -> Vec<(T, Vec<f64>)> {
+pub(crate) fn in_common<T>(cells: Vec<(T, Repeats)>) -> Vec<(T, Vec<f64>)> {
     let round = |(image, _, repetition): &Shared| (image.seed, *repetition);
     let rounds = cells.iter().map(|(_, repeats)| repeats.0.keys().map(round).collect::<BTreeSet<_>>());
     let common = rounds.reduce(|all, own| all.intersection(&own).copied().collect()).unwrap_or_default();

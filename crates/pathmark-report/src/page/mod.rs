@@ -1,27 +1,34 @@
 //! `report.html`: the whole report in one file, readable without a network.
 
-use super::again::Again;
-use super::block::Block;
-use super::results::Results;
-use super::table::Table;
-use super::words::counted;
+mod again;
+pub(crate) mod benches;
+pub(crate) mod block;
+mod columns;
+pub(crate) mod guards;
+pub(crate) mod table;
+
 use crate::error::Result;
 use crate::experiment::{Chapter, Definition, RunFile};
 use crate::measure::{Doubts, LeftOut, Record};
+use crate::results::Results;
+use crate::words::counted;
+use again::Again;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use block::Block;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde::Serialize;
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
+use table::Table;
 
-const STYLE: &str = include_str!("../assets/report.css");
+const STYLE: &str = include_str!("../../assets/report.css");
 const SCRIPTS: [&str; 3] = [
-    include_str!("../assets/report.js"),
-    include_str!("../assets/report-pictures.js"),
-    include_str!("../assets/report-timelines.js"),
+    include_str!("../../assets/report.js"),
+    include_str!("../../assets/report-pictures.js"),
+    include_str!("../../assets/report-timelines.js"),
 ];
 
 const TITLE: &str = "Pathmark: report";
@@ -30,7 +37,7 @@ const TITLE: &str = "Pathmark: report";
 const HEAD_BYTES: u64 = 1024;
 
 /// Whether a file is a report page, which a new one may replace.
-pub(super) fn is_page(path: &Path) -> bool {
+pub(crate) fn is_page(path: &Path) -> bool {
     let mut head = Vec::new();
     let read = File::open(path).and_then(|file| file.take(HEAD_BYTES).read_to_end(&mut head));
     read.is_ok() && String::from_utf8_lossy(&head).contains(&format!("<title>{TITLE}</title>"))
@@ -40,36 +47,37 @@ pub(super) fn is_page(path: &Path) -> bool {
 const OPEN_ROWS: usize = 12;
 
 /// A part of the page: an experiment, the guards, the benches or the claims.
-pub(super) struct Section {
+#[derive(Default)]
+pub(crate) struct Section {
     /// Its anchor, the target of links.
-    pub(super) name: String,
-    pub(super) title: String,
-    pub(super) question: String,
-    pub(super) analysis: String,
+    pub(crate) name: String,
+    pub(crate) title: String,
+    pub(crate) question: String,
+    pub(crate) analysis: String,
     /// Its chapter; `None` for the claims, which are a chapter by themselves.
-    pub(super) chapter: Option<Chapter>,
+    pub(crate) chapter: Option<Chapter>,
     /// Its place in the chapter.
-    pub(super) place: u32,
+    pub(crate) place: u32,
     /// Its finding at the beginning of the page.
-    pub(super) in_short: Option<String>,
+    pub(crate) in_short: Option<String>,
     /// The commands that run a part again; `None` if there are none.
-    pub(super) again: Option<Again>,
+    pub(crate) again: Option<Again>,
     /// Rows that failed.
-    pub(super) failed: Vec<Record>,
+    pub(crate) failed: Vec<Record>,
     /// Rows that were not run.
-    pub(super) left_out: LeftOut,
+    pub(crate) left_out: LeftOut,
     /// Number of rows that were run and did not fail.
-    pub(super) rows: usize,
+    pub(crate) rows: usize,
     /// Rows whose times are in doubt.
-    pub(super) doubts: Doubts,
+    pub(crate) doubts: Doubts,
     /// Command and machine; `None` for the claims, which are computed anew for each page.
-    pub(super) run: Option<RunFile>,
-    pub(super) blocks: Vec<Block>,
+    pub(crate) run: Option<RunFile>,
+    pub(crate) blocks: Vec<Block>,
 }
 
 impl Section {
     /// The section of an experiment.
-    pub(super) fn of(results: Results, blocks: Vec<Block>) -> Self {
+    pub(crate) fn of(results: Results, blocks: Vec<Block>) -> Self {
         let rows = results.len();
         let doubts = results.doubts();
         let again = Again::of(&results);
@@ -77,23 +85,8 @@ impl Section {
         let findings = || blocks.iter().filter_map(Block::as_finding);
         let in_short = in_short.and_then(|number| findings().nth(number.get() - 1)).map(ToString::to_string);
         let Results { failed, left_out, run, .. } = results;
-        let (chapter, run) = (Some(chapter), Some(run));
-        Self {
-            name,
-            title,
-            question,
-            analysis,
-            chapter,
-            place,
-            in_short,
-            again,
-            failed,
-            left_out,
-            rows,
-            doubts,
-            run,
-            blocks,
-        }
+        let words = Self { name, title, question, analysis, in_short, ..Self::default() };
+        Self { chapter: Some(chapter), place, again, failed, left_out, rows, doubts, run: Some(run), blocks, ..words }
     }
 }
 
@@ -101,7 +94,7 @@ impl Section {
 const LONGEST_CELL: usize = 56;
 
 /// The page.
-pub(super) fn html(sections: &[Section]) -> Result<String> {
+pub(crate) fn html(sections: &[Section]) -> Result<String> {
     let claims = sections.iter().filter(|section| section.chapter.is_none());
     let claims = claims.map(|section| self::section(section, true)).collect::<Result<Vec<Markup>>>()?;
     let chapters: Vec<(Chapter, Vec<&Section>)> =

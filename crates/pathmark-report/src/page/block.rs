@@ -1,6 +1,6 @@
 //! Blocks: the parts that a page is made of.
 
-use super::table::{Columns, Table};
+use super::table::Table;
 use crate::atomic_file;
 use crate::error::{Error, Result};
 use crate::plot::{Comparison, ContactSheet, Figure, Placed};
@@ -42,40 +42,31 @@ pub enum Block {
 }
 
 impl Block {
-    pub(super) fn finding(text: impl Into<String>) -> Self {
+    pub(crate) fn finding(text: impl Into<String>) -> Self {
         Self::Finding(text.into())
     }
 
-    pub(super) fn notice(text: impl Into<String>) -> Self {
+    pub(crate) fn notice(text: impl Into<String>) -> Self {
         Self::Notice(text.into())
     }
 
     /// The sentence of a finding.
-    pub(super) fn as_finding(&self) -> Option<&str> {
+    pub(crate) fn as_finding(&self) -> Option<&str> {
         if let Self::Finding(text) = self { Some(text) } else { None }
     }
 
-    pub(super) fn figure(stem: &'static str, figure: impl Figure + 'static) -> Self {
+    pub(crate) fn figure(stem: &'static str, figure: impl Figure + 'static) -> Self {
         Self::Figure { stem, figure: Box::new(figure) }
     }
 
     /// A sheet of images.
-    pub(super) fn sheet(stem: &'static str, sheet: &ContactSheet) -> Result<Self> {
+    pub(crate) fn sheet(stem: &'static str, sheet: &ContactSheet) -> Result<Self> {
         let (png, images) = sheet.png()?;
         Ok(Self::Picture { stem, title: sheet.title.clone(), png, comparison: sheet.comparison, images })
     }
 
-    /// Starts a table with a row for each item; its columns follow.
-    pub(super) fn table<T>(
-        stem: &'static str,
-        title: impl Into<String>,
-        things: impl IntoIterator<Item = T>,
-    ) -> Columns<T> {
-        Columns::of(stem, title, things)
-    }
-
     /// Writes the figure, picture or table (as CSV) into the folder.
-    pub(super) fn save(&self, folder: &Path) -> Result<()> {
+    pub(crate) fn save(&self, folder: &Path) -> Result<()> {
         std::fs::create_dir_all(folder).map_err(|e| Error::system("creating", folder, e))?;
         match self {
             Self::Finding(_) | Self::Notice(_) => Ok(()),

@@ -1,34 +1,34 @@
 //! Schedules and their names in figures.
 
-use super::words::counted;
 use crate::measure::{Record, SERIAL, ScheduleKey, THREAD_PER_ROW, schedule_name};
+use crate::words::counted;
 
 /// A schedule with its name. Schedules are listed by name, then by pieces, then by threads.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Schedule {
+pub(crate) struct Schedule {
     /// The strategy (`thread-per-row` is report A's name), and the other properties that distinguish it within the
     /// experiment.
-    pub(super) name: String,
-    pub(super) key: ScheduleKey,
+    pub(crate) name: String,
+    pub(crate) key: ScheduleKey,
 }
 
 impl Schedule {
     /// Name and threads, in words.
-    pub(super) fn label(&self) -> String {
+    pub(crate) fn label(&self) -> String {
         crew(&self.name, self.key.threads)
     }
 
-    pub(super) fn is_serial(&self) -> bool {
+    pub(crate) fn is_serial(&self) -> bool {
         self.key.strategy == SERIAL
     }
 
-    pub(super) fn is_thread_per_row(&self) -> bool {
+    pub(crate) fn is_thread_per_row(&self) -> bool {
         schedule_name(&self.key.strategy, &self.key.decomposition) == THREAD_PER_ROW
     }
 }
 
 /// A strategy and its number of threads (of workers, if they are processes), in words.
-pub(super) fn crew(strategy: &str, threads: usize) -> String {
+pub(crate) fn crew(strategy: &str, threads: usize) -> String {
     let workers = if is_of_ranks(strategy) { "worker" } else { "thread" };
     format!("{strategy}, {}", counted(threads, workers))
 }
@@ -37,14 +37,14 @@ pub(super) fn crew(strategy: &str, threads: usize) -> String {
 const OF_RANKS: &str = "mpi-";
 
 /// Whether the strategy of that name runs on processes.
-pub(super) fn is_of_ranks(name: &str) -> bool {
+pub(crate) fn is_of_ranks(name: &str) -> bool {
     name.starts_with(OF_RANKS)
 }
 
 /// Rewrites the row of several processes so that figures can compare it with threads: the rank rule takes the place of
 /// the strategy, and the threads of all processes are added up. The name includes the threads within a process. `None`
 /// for a row of one process.
-pub(super) fn over_ranks(record: &Record) -> Option<Record> {
+pub(crate) fn over_ranks(record: &Record) -> Option<Record> {
     let ranks = record.ranks?;
     let within = match (record.threads, record.strategy.as_str()) {
         (1, _) => String::new(),
@@ -56,6 +56,6 @@ pub(super) fn over_ranks(record: &Record) -> Option<Record> {
 }
 
 /// The strategy of a row, with report A's name where it has one.
-pub(super) fn strategy(record: &Record) -> &str {
+pub(crate) fn strategy(record: &Record) -> &str {
     schedule_name(&record.strategy, &record.decomposition)
 }

@@ -1,14 +1,13 @@
 //! Results of `cargo bench --bench scheduling`: it writes `benches/benches.csv` into the folder that
 //! `PATHMARK_BENCH_OUT` names.
 
-use super::block::Block;
-use super::page::Section;
-use super::table::Digits::Decimals;
-use crate::atomic_file;
-use crate::error::{Error, InputError, Result};
+use crate::block::Block;
+use crate::csv_file;
+use crate::error::{Error, Result};
 use crate::experiment::{Chapter, MACHINE, RunFile, read_run_file};
-use crate::measure::{Doubts, LeftOut};
-use crate::plot::{Axis, Dot, DotPlot, Row};
+use crate::page::Section;
+use crate::plot::{Axis, Dot, DotPlot, DotRow};
+use crate::table::Digits::Decimals;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -58,28 +57,17 @@ pub fn write_benches(out: &Path, command: String, rows: &[BenchRow]) -> Result<(
     let folder = out.join(FOLDER);
     std::fs::create_dir_all(&folder).map_err(|e| Error::system("making", &folder, e))?;
     RunFile::of_now(command).write(&folder.join(MACHINE))?;
-    let path = folder.join(FILE);
-    atomic_file::write(&path, |file| {
-        let mut writer = csv::Writer::from_writer(file);
-        rows.iter().try_for_each(|row| writer.serialize(row)).map_err(std::io::Error::other)?;
-        writer.flush()
-    })
-}
-
-fn read(path: &Path) -> Result<Vec<BenchRow>> {
-    let file = std::fs::File::open(path).map_err(|e| Error::system("reading", path, e))?;
-    let rows = csv::Reader::from_reader(file).into_deserialize().collect::<std::result::Result<Vec<BenchRow>, _>>();
-    rows.map_err(|e| InputError::new("benches", "", e.to_string()).in_file(path.display().to_string(), None).into())
+    csv_file::write(&folder.join(FILE), rows)
 }
 
 /// The section, if a folder has such a file. Writes its figure and tables beside the file.
-pub(super) fn section(out: &Path) -> Result<Option<Section>> {
+pub(crate) fn section(out: &Path) -> Result<Option<Section>> {
     let folder = out.join(FOLDER);
     let path = folder.join(FILE);
     if !path.is_file() {
         return Ok(None);
     }
-    let rows = read(&path)?;
+    let rows: Vec<BenchRow> = csv_file::read(&path)?;
     let run = read_run_file(&folder.join(MACHINE))?;
     let speedups = speedups(&rows);
     let mut blocks = Vec::new();
@@ -102,14 +90,10 @@ pub(super) fn section(out: &Path) -> Result<Option<Section>> {
         analysis: ANALYSIS.to_string(),
         chapter: Some(Chapter::Scheduling),
         place: u32::MAX,
-        in_short: None,
-        again: None,
-        failed: Vec::new(),
-        left_out: LeftOut::default(),
-        doubts: Doubts::default(),
         rows: rows.len(),
         run: Some(run),
         blocks,
+        ..Section::default()
     }))
 }
 
@@ -133,7 +117,7 @@ fn pairs(rows: &[BenchRow]) -> Vec<(&BenchRow, &BenchRow)> {
 fn plot(speedups: &[(&BenchRow, [f64; 3])], machine: String) -> DotPlot {
     let row = |(row, [speedup, low, high]): &(&BenchRow, [f64; 3])| {
         let dot = Dot::new(*speedup, Some((*low, *high)));
-        Row::new(format!("{}, {}", row.case, row.parameter), vec![Some(dot)])
+        DotRow::new(format!("{}, {}", row.case, row.parameter), vec![Some(dot)])
     };
     let mut plot = DotPlot::new(
         "Speedup by cargo bench",
@@ -201,7 +185,7 @@ mod tests {
             row("seam", "rayon-bare", "2", 2e-6),
         ];
         write_benches(folder.path(), "cargo bench".to_string(), &rows).unwrap();
-        assert_eq!(read(&folder.path().join(FOLDER).join(FILE)).unwrap(), rows);
+        assert_eq!(csv_file::read::<BenchRow>(&folder.path().join(FOLDER).join(FILE)).unwrap(), rows);
         let found = speedups(&rows);
         assert_eq!(found.iter().map(|(row, _)| row.case.as_str()).collect::<Vec<_>>(), ["rayon", "serial"]);
         let [speedup, low, high] = found[0].1;

@@ -4,11 +4,11 @@ use std::collections::HashMap;
 use std::hash::Hash;
 
 /// A property of an item, in words.
-pub(super) type Part<T> = fn(&T) -> String;
+pub(crate) type Part<T> = fn(&T) -> String;
 
 /// Returns the parts that distinguish items which are equal in `told` and in all earlier parts. `told` is in every name
 /// anyway.
-pub(super) fn needed<T, K: Hash + Eq>(things: &[&T], told: impl Fn(&T) -> K, parts: &[Part<T>]) -> Vec<Part<T>> {
+pub(crate) fn needed<T, K: Hash + Eq>(things: &[&T], told: impl Fn(&T) -> K, parts: &[Part<T>]) -> Vec<Part<T>> {
     let mut groups = numbered(things.iter().map(|thing| told(thing)));
     let mut count = distinct(&groups);
     let mut needed = Vec::new();
@@ -24,7 +24,7 @@ pub(super) fn needed<T, K: Hash + Eq>(things: &[&T], told: impl Fn(&T) -> K, par
 }
 
 /// The words that are not empty, separated by commas.
-pub(super) fn joined(words: impl IntoIterator<Item = String>) -> String {
+pub(crate) fn joined(words: impl IntoIterator<Item = String>) -> String {
     words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ")
 }
 

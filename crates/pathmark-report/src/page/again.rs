@@ -1,18 +1,18 @@
 //! The commands that run a part of an experiment again, as the page offers them.
 
-use super::results::Results;
-use super::rows::Row;
-use super::schedule::strategy;
 use crate::digest;
 use crate::experiment::{Definition, Profile};
 use crate::measure::Axis;
+use crate::results::Results;
+use crate::rows::Row;
+use crate::schedule::strategy;
 use crate::shell;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// The parts of such a command, each quoted for a shell. The page's script only joins them.
 #[derive(Serialize)]
-pub(super) struct Again {
+pub(crate) struct Again {
     /// The command without filters.
     run: String,
     /// The filter that leads to a name in figures.
@@ -27,7 +27,7 @@ const OUT: &str = "--out \"$(mktemp -d)\"";
 impl Again {
     /// The commands for an experiment. `None` if there is none that would run the same cells: its file is gone or was
     /// edited, or this build cannot run it.
-    pub(super) fn of(results: &Results) -> Option<Self> {
+    pub(crate) fn of(results: &Results) -> Option<Self> {
         let (run, definition) = (&results.run, &results.definition);
         let asked = if run.experiment.is_empty() { &definition.name } else { &run.experiment };
         let now = Definition::load(&definition.lab, asked).ok()?.with_values(&run.set).ok()?;

@@ -1,15 +1,14 @@
 //! The price list of the guards: `guards/guards.csv`, which `pathmark selftest --out` and `reproduce` write.
 
-use super::block::Block;
-use super::page::Section;
-use super::table::Digits::{Decimals, Significant};
-use super::words::{LEVEL, Told};
 use crate::analysis::Interval;
+use crate::block::Block;
 use crate::error::Result;
+use crate::estimated::{Estimated, LEVEL};
 use crate::experiment::{Chapter, read_run_file};
 use crate::guard_prices::{FILE, FOLDER, PriceRow, read_prices};
-use crate::measure::{Doubts, LeftOut};
-use crate::plot::{Axis, Dot, DotPlot, Row};
+use crate::page::Section;
+use crate::plot::{Axis, Dot, DotPlot, DotRow};
+use crate::table::Digits::{Decimals, Significant};
 use std::path::Path;
 
 const QUESTION: &str = "What does it cost to be right on hard inputs, and how wrong is what would do on easy ones?";
@@ -19,7 +18,7 @@ A ratio above 1 is what the guard costs in the operation that it guards; in an i
 The simpler variants are not options of the program: a table of hard cases (`pathmark selftest`) insists that the program passes where they fail.";
 
 /// The section, if a folder has a price list. Writes its figure and tables beside the list.
-pub(super) fn section(out: &Path) -> Result<Option<Section>> {
+pub(crate) fn section(out: &Path) -> Result<Option<Section>> {
     let folder = out.join(FOLDER);
     let path = folder.join(FILE);
     if !path.is_file() {
@@ -41,21 +40,16 @@ pub(super) fn section(out: &Path) -> Result<Option<Section>> {
         question: QUESTION.to_string(),
         analysis: ANALYSIS.to_string(),
         chapter: Some(Chapter::HardInputs),
-        place: 0,
-        in_short: None,
-        again: None,
-        failed: Vec::new(),
-        left_out: LeftOut::default(),
-        doubts: Doubts::default(),
         rows: rows.len(),
         run: Some(run),
         blocks,
+        ..Section::default()
     }))
 }
 
 fn plot(rows: &[PriceRow], machine: String) -> DotPlot {
     let dot = |row: &PriceRow| Some(Dot::new(row.time_ratio?, row.time_ratio_low.zip(row.time_ratio_high)));
-    let named = rows.iter().map(|row| Row { name: row.guard.clone(), dots: vec![dot(row)] }).collect();
+    let named = rows.iter().map(|row| DotRow { name: row.guard.clone(), dots: vec![dot(row)] }).collect();
     let mut plot = DotPlot::new("What each guard costs", Axis::log("time with the guard / time without"), named);
     plot.subtitle = machine;
     plot.caption = "Bars: distribution-free 95 % interval of the median over paired rounds. The table says what goes wrong without each guard.".to_string();
@@ -66,18 +60,18 @@ fn plot(rows: &[PriceRow], machine: String) -> DotPlot {
 fn prices(rows: &[PriceRow]) -> Block {
     let told = |value: f64, low: f64, high: f64| {
         // A value that is not estimated has no interval.
-        Told::of(value, (low < high).then_some(Interval { low, high, level: LEVEL }))
+        Estimated::of(value, (low < high).then_some(Interval { low, high, level: LEVEL }))
     };
     let ratio = |row: &PriceRow| Some(told(row.time_ratio?, row.time_ratio_low?, row.time_ratio_high?));
     Block::table("price-list", "Price list of the guards", rows)
         .column("guard", |row| row.guard.clone())
-        .told("error with it", Significant(3), |row| told(row.error_with, row.error_with_low, row.error_with_high))
-        .told("error without", Significant(3), |row| {
+        .estimated("error with it", Significant(3), |row| told(row.error_with, row.error_with_low, row.error_with_high))
+        .estimated("error without", Significant(3), |row| {
             told(row.error_without, row.error_without_low, row.error_without_high)
         })
         .number("ns with it", Significant(3), |row| row.ns_with)
         .number("ns without", Significant(3), |row| row.ns_without)
-        .told("time with / without", Decimals(2), |row| ratio(row))
+        .estimated("time with / without", Decimals(2), |row| ratio(row))
         .end()
 }
 
