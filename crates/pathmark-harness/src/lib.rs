@@ -20,6 +20,7 @@ pub mod lab;
 pub mod lock;
 pub mod measure;
 pub mod metric;
+mod settings;
 pub mod shell;
 pub mod simulate;
 mod temporary;

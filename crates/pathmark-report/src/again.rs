@@ -5,7 +5,7 @@ use super::rows::Row;
 use super::schedule::strategy;
 use crate::digest;
 use crate::experiment::{Definition, Profile};
-use crate::measure::Axis;
+use crate::measure::Setting;
 use crate::shell;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -68,7 +68,7 @@ fn filters(results: &Results, definition: &Definition, profile: Profile) -> Opti
     for row in results.rows() {
         let Some(cell) = by_id.get(row.cell.as_str()) else { continue };
         for (axis, name) in shown(row) {
-            let asked = Axis::named(axis).map(|axis| cell.shown(axis)).unwrap_or_default();
+            let asked = Setting::named(axis).map(|axis| cell.shown(axis)).unwrap_or_default();
             found.entry(name).or_default().insert((axis, asked));
         }
     }

@@ -32,6 +32,8 @@ mod reference;
 mod run_file;
 mod running;
 mod scene_version;
+#[cfg(test)]
+mod setting_tests;
 mod shuffle;
 mod sides;
 mod sweep;

@@ -4,7 +4,7 @@ use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use crate::image_io::{self, Image};
 use crate::lab::Lab;
-use crate::measure::{AXES, Record, Settings};
+use crate::measure::{Record, SETTINGS, Settings};
 use serde_json::Value;
 use std::env;
 use std::ffi::OsString;
@@ -70,7 +70,7 @@ pub(super) fn write_messages(path: &Path) -> Result<bool> {
 fn options(settings: &Settings, rule: &str) -> Vec<OsString> {
     let mut options = vec!["render".to_string(), settings.scene.clone(), "--quiet".to_string(), "--json".to_string()];
     let samples_and_seed = ["spp", "seed", "clamp"];
-    for axis in AXES.iter().filter(|axis| !axis.about.is_empty() || samples_and_seed.contains(&axis.name)) {
+    for axis in SETTINGS.iter().filter(|axis| !axis.about.is_empty() || samples_and_seed.contains(&axis.name)) {
         let value = axis.show(settings);
         if !value.is_empty() {
             options.extend([format!("--{}", axis.name), value]);

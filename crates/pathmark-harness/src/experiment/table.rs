@@ -3,7 +3,7 @@
 use super::definition::REFERENCE_SPP;
 use super::until::{MOST_REPETITIONS, Until};
 use super::{Profile, Timeout};
-use crate::measure::{AXES, Axis, Field, Settings, available_threads};
+use crate::measure::{Field, SETTINGS, Setting, Settings, available_threads};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{DeserializeSeed, Error as _, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -103,7 +103,7 @@ impl<'de, const PROFILE: bool> Deserialize<'de> for Key<PROFILE> {
         } else {
             &["repetitions", "weak", "curve", "profiles"]
         };
-        let known: Vec<&str> = AXES.iter().map(|axis| axis.name).chain(others.iter().copied()).collect();
+        let known: Vec<&str> = SETTINGS.iter().map(|axis| axis.name).chain(others.iter().copied()).collect();
         if known.contains(&name.as_str()) {
             return Ok(Self(name));
         }
@@ -112,7 +112,7 @@ impl<'de, const PROFILE: bool> Deserialize<'de> for Key<PROFILE> {
 }
 
 /// The values of an axis, read as its field's type.
-struct Values(&'static Axis);
+struct Values(&'static Setting);
 
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "expected a number of threads or \"all\"")]
@@ -176,7 +176,7 @@ impl<'de, const PROFILE: bool> Visitor<'de> for TableVisitor<PROFILE> {
         let usual = if PROFILE { Scale::usual() } else { Scale::default() };
         let mut table = Table::<PROFILE> { axes: usual.axes, repetitions: usual.repetitions, ..Table::default() };
         while let Some(Key(name)) = map.next_key::<Key<PROFILE>>()? {
-            match (Axis::named(&name), name.as_str()) {
+            match (Setting::named(&name), name.as_str()) {
                 (Some(axis), _) => _ = table.axes.insert(axis.name, map.next_value_seed(Values(axis))?),
                 (None, "weak") => table.weak = map.next_value()?,
                 (None, "curve") => table.curve = map.next_value()?,

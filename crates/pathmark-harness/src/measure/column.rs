@@ -9,22 +9,15 @@ pub struct Column {
     pub about: &'static str,
     /// The type of its values in this program.
     pub(super) kind: &'static str,
+    /// The first version of the columns (column `schema`) that has it.
+    pub since: u32,
 }
 
-/// The first version of the columns that had each; all others are as old as the file.
-const SINCE: &[(u32, &[&str])] = &[
-    (2, &["output", "pilot_s", "gap_sum_s", "tail_sum_s", "foreign_cpu_s"]),
-    (3, &["accelerator", "max_depth", "build_s", "box_tests", "primitive_tests"]),
-    (4, &["adaptive", "target_error", "time_limit_s", "rounds", "estimated_rmse", "variance", "roulette", "clamp"]),
-    (5, &["kernel_fallback", "simd"]),
-    (6, &["filter", "epsilon", "object_mse", "within_tolerance", "fireflies", "black_pixels", "image_write_s"]),
-    (7, &["ranks", "rank_rule", "mpi"]),
-    (8, &["device_compile_s", "device_copy_s"]),
-    (9, &["camera_rays"]),
-    (10, &["steal_s"]),
-];
-
 impl Column {
+    pub(super) const fn new(name: &'static str, about: &'static str, kind: &'static str, since: u32) -> Self {
+        Self { name, about, kind, since }
+    }
+
     /// The kind of its values, in words.
     pub fn values(&self) -> &'static str {
         let kind = self.kind;
@@ -49,29 +42,83 @@ impl Column {
         let units = [("_s", "seconds"), ("_bytes", "bytes")];
         units.iter().find(|(ending, _)| self.name.ends_with(ending)).map(|(_, unit)| *unit)
     }
-
-    /// The first version of the columns (column `schema`) that has it.
-    pub fn since(&self) -> u32 {
-        SINCE.iter().find(|(_, names)| names.contains(&self.name)).map_or(1, |(version, _)| *version)
-    }
 }
 
-/// A struct with public fields, and the list of its fields as columns.
+/// A struct with the columns of the settings between its own public fields, and the list of its fields as columns.
 macro_rules! columns {
+    (since) => { 1 };
+    (since $since:literal) => { $since };
     (
-        $(#[$meta:meta])*
-        pub struct $name:ident {
-            $($(#[doc = $about:literal])+ pub $field:ident: $kind:ty,)*
-        }
+        { $(#[$meta:meta])* pub struct $name:ident { $($first:tt)* } settings { $($last:tt)* } }
+        image { $($image:tt)* } schedule { $($schedule:tt)* }
+    ) => {
+        columns! { $(#[$meta])* $name { $($first)* } { $($image)* } { $($schedule)* } { $($last)* } }
+    };
+    (
+        $(#[$meta:meta])* $name:ident
+        { $($(#[doc = $first_about:literal])+ pub $first:ident: $first_kind:ty,)* }
+        { $(
+            $(#[doc = $image_about:literal])+
+            $image_place:ident $image:ident: $image_kind:ty $(= $image_default:expr)?, $image_setting:expr
+            $(, when $image_when:meta)? $(, read $image_read:meta)?;
+        )* }
+        { $(
+            $(#[doc = $schedule_about:literal])+
+            $schedule_place:ident $schedule:ident: $schedule_kind:ty $(= $schedule_default:expr)?, $schedule_setting:expr
+            $(, when $schedule_when:meta)? $(, read $schedule_read:meta)?;
+        )* }
+        { $($(#[doc = $about:literal])+ $(#[since($since:literal)])? pub $field:ident: $kind:ty,)* }
     ) => {
         $(#[$meta])*
         pub struct $name {
+            $($(#[doc = $first_about])+ pub $first: $first_kind,)*
+            $($(#[doc = $image_about])+ $(#[$image_when])? pub $image: <$image_kind as Value>::Column,)*
+            $($(#[doc = $schedule_about])+ $(#[$schedule_when])? pub $schedule: <$schedule_kind as Value>::Column,)*
             $($(#[doc = $about])+ pub $field: $kind,)*
         }
 
+        impl $name {
+            fn of_keys(image: ImageKey, schedule: ScheduleKey) -> Self {
+                Self {
+                    $($(#[$image_when])? $image: image.$image,)*
+                    $($(#[$schedule_when])? $schedule: schedule.$schedule,)*
+                    ..Self::default()
+                }
+            }
+
+            /// The identity of its image.
+            pub fn image_key(&self) -> ImageKey {
+                ImageKey { $($(#[$image_when])? $image: self.$image.clone(),)* }
+            }
+
+            /// The identity of its schedule among those of the same image.
+            pub fn schedule_key(&self) -> ScheduleKey {
+                ScheduleKey { $($(#[$schedule_when])? $schedule: self.$schedule.clone(),)* }
+            }
+        }
+
         /// The columns of a row, in their order.
-        pub const COLUMNS: &[$crate::measure::Column] = &[
-            $($crate::measure::Column { name: stringify!($field), about: concat!($($about),+), kind: stringify!($kind) }),*
+        pub const COLUMNS: &[Column] = &[
+            $(Column::new(stringify!($first), concat!($($first_about),+), stringify!($first_kind), 1),)*
+            $(
+                $(#[$image_when])?
+                Column::new(
+                    stringify!($image),
+                    concat!($($image_about),+),
+                    <$image_kind as Value>::COLUMN,
+                    $image_setting.since,
+                ),
+            )*
+            $(
+                $(#[$schedule_when])?
+                Column::new(
+                    stringify!($schedule),
+                    concat!($($schedule_about),+),
+                    <$schedule_kind as Value>::COLUMN,
+                    $schedule_setting.since,
+                ),
+            )*
+            $(Column::new(stringify!($field), concat!($($about),+), stringify!($kind), columns!(since $($since)?)),)*
         ];
     };
 }
@@ -79,7 +126,6 @@ pub(super) use columns;
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::measure::{COLUMNS, Record, SCHEMA};
 
     /// The headings of a real file, from the CSV writer.
@@ -99,13 +145,7 @@ mod tests {
     #[test]
     fn every_column_is_explained() {
         for column in COLUMNS {
-            assert!(column.about.len() > 4, "{column:?}");
-        }
-        for (version, names) in SINCE {
-            assert!(*version <= SCHEMA);
-            for name in *names {
-                assert!(COLUMNS.iter().any(|column| column.name == *name), "{name} is no column");
-            }
+            assert!(column.about.len() > 4 && column.since <= SCHEMA, "{column:?}");
         }
     }
 
@@ -119,6 +159,6 @@ mod tests {
         );
         assert_eq!((column("scene").values(), column("dirty").values()), ("text", "true or false"));
         assert!(column("mse").may_be_empty() && !column("seed").may_be_empty());
-        assert_eq!((column("simd").since(), column("scene").since()), (5, 1));
+        assert_eq!((column("simd").since, column("scene").since), (5, 1));
     }
 }

@@ -2,7 +2,6 @@
 
 use super::cut::cut;
 use super::output::{self, Delivery, OUTPUTS, Output};
-use super::settings::check_spp;
 use super::tree_folder::TreeFolder;
 use super::{Settings, Warning, available_threads, pilot};
 use crate::digest;
@@ -13,6 +12,7 @@ use crate::kernel::workload::Entry as Workload;
 use crate::kernel::{self, Choice, Clamped, Counts, Kernel, OwnEstimator, Spec};
 use crate::lab::{Lab, THREAD_PER_ROW};
 use crate::scene::{SUBPIXELS, Scene};
+use crate::settings::check_spp;
 use crate::strategy::{self, Config, Strategy, StrategyError, Workers};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
