@@ -4,7 +4,7 @@ use crate::error::{Error, InputError, Result};
 use crate::input::{locate, read_text};
 use crate::kernel::Spec;
 use crate::lab::Lab;
-use crate::measure::{Field, LARGEST_SEED, SETTINGS, Setting, Settings, THREAD_PER_ROW};
+use crate::measure::{Kind, LARGEST_SEED, SETTINGS, Setting, Settings, THREAD_PER_ROW};
 use clap::builder::ValueParser;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
@@ -74,13 +74,13 @@ fn cache_option() -> Arg {
 
 /// The check that clap makes before the program reads a value.
 fn parser(axis: &Setting) -> ValueParser {
-    match (axis.field)(&mut Settings::default()) {
-        Field::Switch(_) => value_parser!(bool),
-        Field::Count(_) => value_parser!(u16).into(),
-        Field::Samples(_) => value_parser!(u32).into(),
-        Field::Seed(_) => value_parser!(u64).into(),
-        Field::Workers(_) => value_parser!(usize).into(),
-        Field::Name(_) | Field::Fitting(_) | Field::Size(_) => ValueParser::string(),
+    match axis.kind {
+        Kind::Switch => value_parser!(bool),
+        Kind::Count => value_parser!(u16).into(),
+        Kind::Samples => value_parser!(u32).into(),
+        Kind::Seed => value_parser!(u64).into(),
+        Kind::Workers => value_parser!(usize).into(),
+        Kind::Name | Kind::Fitting | Kind::Size => ValueParser::string(),
     }
 }
 

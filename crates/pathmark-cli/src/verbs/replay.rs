@@ -233,7 +233,7 @@ fn table(lines: &[Line]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::Field;
+    use crate::measure::Kind;
     use clap::Parser;
 
     #[derive(Parser)]
@@ -259,9 +259,9 @@ mod tests {
         assert_eq!(left, ["scene", "spp", "adaptive", "clamp"]);
         for setting in told {
             let mut settings = base();
-            let value = match (setting.field)(&mut settings) {
-                Field::Size(_) => "9x7",
-                Field::Name(_) | Field::Fitting(_) => "other",
+            let value = match setting.kind {
+                Kind::Size => "9x7",
+                Kind::Name | Kind::Fitting => "other",
                 _ => "3",
             };
             setting.set(&mut settings, value).unwrap();

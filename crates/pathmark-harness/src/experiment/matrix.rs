@@ -5,7 +5,7 @@ use super::processes::check_processes;
 use super::table::{Matrix, Scale};
 use super::{Cell, Definition, Profile};
 use crate::error::{Error, InputError, Result};
-use crate::measure::{Field, ImageKey, LARGEST_SEED, SETTINGS, ScheduleKey, Setting, Settings, Setup};
+use crate::measure::{ImageKey, Kind, LARGEST_SEED, SETTINGS, ScheduleKey, Setting, Settings, Setup};
 use crate::sampling::{SAMPLERS, is_deterministic};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -153,9 +153,8 @@ impl<'a> Product<'a> {
         }
         for value in self.values(axis) {
             let mut settings = settings.clone();
-            match (axis.field)(&mut settings) {
-                Field::Fitting(_) if value == FITTING => {}
-                _ => axis.set(&mut settings, &value)?,
+            if axis.kind != Kind::Fitting || value != FITTING {
+                axis.set(&mut settings, &value)?;
             }
             match axis.name {
                 "scene" => settings.scene = self.definition.scene_path(&value),

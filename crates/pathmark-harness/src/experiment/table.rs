@@ -3,7 +3,7 @@
 use super::definition::REFERENCE_SPP;
 use super::until::{MOST_REPETITIONS, Until};
 use super::{Profile, Timeout};
-use crate::measure::{Field, SETTINGS, Setting, Settings, available_threads};
+use crate::measure::{Kind, SETTINGS, Setting, available_threads};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{DeserializeSeed, Error as _, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -144,15 +144,15 @@ impl<'de> DeserializeSeed<'de> for Values {
     type Value = Vec<String>;
 
     fn deserialize<D: Deserializer<'de>>(self, from: D) -> Result<Self::Value, D::Error> {
-        Ok(match (self.0.field)(&mut Settings::default()) {
-            Field::Name(_) | Field::Fitting(_) => Vec::deserialize(from)?,
-            Field::Switch(_) => words(&Vec::<bool>::deserialize(from)?),
-            Field::Count(_) => words(&Vec::<u16>::deserialize(from)?),
-            Field::Samples(_) => words(&Vec::<u32>::deserialize(from)?),
-            Field::Seed(_) => words(&Vec::<u64>::deserialize(from)?),
-            Field::Workers(_) => Vec::<Threads>::deserialize(from)?.iter().map(|own| own.count().to_string()).collect(),
+        Ok(match self.0.kind {
+            Kind::Name | Kind::Fitting => Vec::deserialize(from)?,
+            Kind::Switch => words(&Vec::<bool>::deserialize(from)?),
+            Kind::Count => words(&Vec::<u16>::deserialize(from)?),
+            Kind::Samples => words(&Vec::<u32>::deserialize(from)?),
+            Kind::Seed => words(&Vec::<u64>::deserialize(from)?),
+            Kind::Workers => Vec::<Threads>::deserialize(from)?.iter().map(|own| own.count().to_string()).collect(),
             // All cells have the same size, so it is not a list.
-            Field::Size(_) => <[u32; 2]>::deserialize(from).map(|[width, height]| vec![format!("{width}x{height}")])?,
+            Kind::Size => <[u32; 2]>::deserialize(from).map(|[width, height]| vec![format!("{width}x{height}")])?,
         })
     }
 }

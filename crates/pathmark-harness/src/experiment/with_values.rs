@@ -11,7 +11,7 @@ use super::Definition;
 use super::definition::REFERENCE_SPP;
 use crate::error::{InputError, Result};
 use crate::input::parse;
-use crate::measure::{Field, SETTINGS, Setting, Settings, parse_size};
+use crate::measure::{Kind, SETTINGS, Setting, parse_size};
 use toml::{Table, Value};
 
 /// The tables of profiles, which may hold a value instead of the matrix.
@@ -80,18 +80,18 @@ fn matrices(table: &mut Table) -> Vec<&mut Table> {
 /// The value in a definition: one size, or a list of words, numbers or switches.
 fn value_of(axis: &Setting, values: &str) -> Result<Value> {
     let each = values.split(',').map(str::trim);
-    Ok(match (axis.field)(&mut Settings::default()) {
-        Field::Size(_) => {
+    Ok(match axis.kind {
+        Kind::Size => {
             let (width, height) = parse_size(values)?;
             Value::Array(vec![Value::Integer(width.into()), Value::Integer(height.into())])
         }
-        Field::Switch(_) => Value::Array(each.map(|value| switch(axis.name, value)).collect::<Result<_>>()?),
-        Field::Name(_) | Field::Fitting(_) => Value::Array(each.map(Value::from).collect()),
-        Field::Workers(_) => {
+        Kind::Switch => Value::Array(each.map(|value| switch(axis.name, value)).collect::<Result<_>>()?),
+        Kind::Name | Kind::Fitting => Value::Array(each.map(Value::from).collect()),
+        Kind::Workers => {
             let workers = |value: &str| if value == "all" { Ok(value.into()) } else { number(axis.name, value) };
             Value::Array(each.map(workers).collect::<Result<_>>()?)
         }
-        Field::Count(_) | Field::Samples(_) | Field::Seed(_) => {
+        Kind::Count | Kind::Samples | Kind::Seed => {
             Value::Array(each.map(|value| number(axis.name, value)).collect::<Result<_>>()?)
         }
     })

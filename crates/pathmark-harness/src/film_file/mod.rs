@@ -5,7 +5,7 @@ mod sum_file;
 use crate::error::Result;
 use crate::film::Film;
 use crate::kernel;
-use crate::settings::{ImageKey, Value, settings_list};
+use crate::settings::{Asked, ImageKey, settings_list};
 use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -30,7 +30,7 @@ macro_rules! film_key {
         impl FilmKey {
             /// The key of a film with this image.
             pub fn of(image: ImageKey) -> Self {
-                Self { $($(#[$when])? $field: Value::of(image.$field),)* revision: kernel::REVISION }
+                Self { $($(#[$when])? $field: Asked::of(image.$field),)* revision: kernel::REVISION }
             }
         }
     };

@@ -48,77 +48,49 @@ impl Column {
 macro_rules! columns {
     (since) => { 1 };
     (since $since:literal) => { $since };
-    (
-        { $(#[$meta:meta])* pub struct $name:ident { $($first:tt)* } settings { $($last:tt)* } }
-        image { $($image:tt)* } schedule { $($schedule:tt)* }
-    ) => {
-        columns! { $(#[$meta])* $name { $($first)* } { $($image)* } { $($schedule)* } { $($last)* } }
-    };
-    (
-        $(#[$meta:meta])* $name:ident
-        { $($(#[doc = $first_about:literal])+ pub $first:ident: $first_kind:ty,)* }
-        { $(
-            $(#[doc = $image_about:literal])+
-            $image_place:ident $image:ident: $image_kind:ty $(= $image_default:expr)?, $image_setting:expr
-            $(, when $image_when:meta)? $(, read $image_read:meta)?;
-        )* }
-        { $(
-            $(#[doc = $schedule_about:literal])+
-            $schedule_place:ident $schedule:ident: $schedule_kind:ty $(= $schedule_default:expr)?, $schedule_setting:expr
-            $(, when $schedule_when:meta)? $(, read $schedule_read:meta)?;
-        )* }
-        { $($(#[doc = $about:literal])+ $(#[since($since:literal)])? pub $field:ident: $kind:ty,)* }
-    ) => {
+    ({
+        $(#[$meta:meta])*
+        pub struct $name:ident { $($(#[doc = $f_about:literal])+ pub $f:ident: $f_kind:ty,)* }
+        settings { $($(#[doc = $l_about:literal])+ $(#[since($l_since:literal)])? pub $l:ident: $l_kind:ty,)* }
+    } image { $(
+        $(#[doc = $i_about:literal])+ $i_place:ident $i:ident: $i_kind:ty $(= $i_default:expr)?, $i_setting:expr
+        $(, when $i_when:meta)? $(, read $i_read:meta)?;
+    )* } schedule { $(
+        $(#[doc = $s_about:literal])+ $s_place:ident $s:ident: $s_kind:ty $(= $s_default:expr)?, $s_setting:expr
+        $(, when $s_when:meta)? $(, read $s_read:meta)?;
+    )* }) => {
         $(#[$meta])*
         pub struct $name {
-            $($(#[doc = $first_about])+ pub $first: $first_kind,)*
-            $($(#[doc = $image_about])+ $(#[$image_when])? pub $image: <$image_kind as Value>::Column,)*
-            $($(#[doc = $schedule_about])+ $(#[$schedule_when])? pub $schedule: <$schedule_kind as Value>::Column,)*
-            $($(#[doc = $about])+ pub $field: $kind,)*
+            $($(#[doc = $f_about])+ pub $f: $f_kind,)*
+            $($(#[doc = $i_about])+ $(#[$i_when])? pub $i: <$i_kind as Asked>::Column,)*
+            $($(#[doc = $s_about])+ $(#[$s_when])? pub $s: <$s_kind as Asked>::Column,)*
+            $($(#[doc = $l_about])+ pub $l: $l_kind,)*
         }
 
         impl $name {
             fn of_keys(image: ImageKey, schedule: ScheduleKey) -> Self {
-                Self {
-                    $($(#[$image_when])? $image: image.$image,)*
-                    $($(#[$schedule_when])? $schedule: schedule.$schedule,)*
-                    ..Self::default()
-                }
+                Self { $($(#[$i_when])? $i: image.$i,)* $($(#[$s_when])? $s: schedule.$s,)* ..Self::default() }
             }
 
             /// The identity of its image.
             pub fn image_key(&self) -> ImageKey {
-                ImageKey { $($(#[$image_when])? $image: self.$image.clone(),)* }
+                ImageKey { $($(#[$i_when])? $i: self.$i.clone(),)* }
             }
 
             /// The identity of its schedule among those of the same image.
             pub fn schedule_key(&self) -> ScheduleKey {
-                ScheduleKey { $($(#[$schedule_when])? $schedule: self.$schedule.clone(),)* }
+                ScheduleKey { $($(#[$s_when])? $s: self.$s.clone(),)* }
             }
         }
 
         /// The columns of a row, in their order.
         pub const COLUMNS: &[Column] = &[
-            $(Column::new(stringify!($first), concat!($($first_about),+), stringify!($first_kind), 1),)*
-            $(
-                $(#[$image_when])?
-                Column::new(
-                    stringify!($image),
-                    concat!($($image_about),+),
-                    <$image_kind as Value>::COLUMN,
-                    $image_setting.since,
-                ),
-            )*
-            $(
-                $(#[$schedule_when])?
-                Column::new(
-                    stringify!($schedule),
-                    concat!($($schedule_about),+),
-                    <$schedule_kind as Value>::COLUMN,
-                    $schedule_setting.since,
-                ),
-            )*
-            $(Column::new(stringify!($field), concat!($($about),+), stringify!($kind), columns!(since $($since)?)),)*
+            $(Column::new(stringify!($f), concat!($($f_about),+), stringify!($f_kind), 1),)*
+            $($(#[$i_when])?
+            Column::new(stringify!($i), concat!($($i_about),+), <$i_kind as Asked>::COLUMN, $i_setting.since),)*
+            $($(#[$s_when])?
+            Column::new(stringify!($s), concat!($($s_about),+), <$s_kind as Asked>::COLUMN, $s_setting.since),)*
+            $(Column::new(stringify!($l), concat!($($l_about),+), stringify!($l_kind), columns!(since $($l_since)?)),)*
         ];
     };
 }

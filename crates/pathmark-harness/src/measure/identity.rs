@@ -1,4 +1,4 @@
-//! What a setup really uses, and the keys of its image, schedule and film: those that its rows will have.
+//! The values that a setup really uses, and the keys of its image, schedule and film: those that its rows will have.
 
 use super::{ImageKey, ScheduleKey, Settings, Setup};
 use crate::film_file::FilmKey;

@@ -42,7 +42,7 @@ mod warning;
 
 pub use crate::lab::{SERIAL, THREAD_PER_ROW};
 pub use crate::settings::{
-    Field, ImageKey, LARGEST_BYTES, LARGEST_SEED, LARGEST_SPP, SETTINGS, ScheduleKey, Setting, Settings,
+    ImageKey, Kind, LARGEST_BYTES, LARGEST_SEED, LARGEST_SPP, SETTINGS, ScheduleKey, Setting, Settings,
     available_threads, image_columns, parse_size, schedule_columns, schedule_name,
 };
 pub use calibration::{CalibrationRow, calibrate};

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::image_io::Image;
 use crate::metric;
 use crate::scene::Scene;
-use crate::settings::{Value, settings_list};
+use crate::settings::{Asked, settings_list};
 use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 

@@ -3,7 +3,7 @@
 //! Cells, rows, references and figures compare by these keys.
 
 use super::list::settings_list;
-use super::value::Value;
+use super::value::Asked;
 use super::{Setting, Settings};
 use std::fmt;
 use std::iter::once;
@@ -24,10 +24,10 @@ impl KeyColumn {
 
 macro_rules! asked_for {
     ($settings:ident own $field:ident) => {
-        Value::column(&$settings.$field)
+        Asked::column(&$settings.$field)
     };
     ($settings:ident spec $field:ident) => {
-        Value::column(&$settings.spec.$field)
+        Asked::column(&$settings.spec.$field)
     };
     ($settings:ident found $field:ident) => {
         Default::default()
@@ -54,7 +54,7 @@ macro_rules! keys {
         $(#[$meta])*
         #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
         pub struct $name {
-            $($(#[doc = $about])+ $(#[$when])? pub $field: <$kind as Value>::Column,)*
+            $($(#[doc = $about])+ $(#[$when])? pub $field: <$kind as Asked>::Column,)*
         }
 
         impl $name {
@@ -68,7 +68,7 @@ macro_rules! keys {
                     $(#[$when])?
                     KeyColumn {
                         name: stringify!($field),
-                        text: <$kind as Value>::text(&self.$field),
+                        text: <$kind as Asked>::text(&self.$field),
                         setting: $setting,
                     },
                 )*]

@@ -18,8 +18,8 @@ use std::sync::LazyLock;
 pub use keys::{ImageKey, ScheduleKey};
 pub(crate) use list::settings_list;
 pub use table::{SETTINGS, Setting, image_columns, parse_size, schedule_columns};
-pub use value::Field;
-pub(crate) use value::Value;
+pub(crate) use value::Asked;
+pub use value::Kind;
 
 /// Most workers that a user may request, and most threads that a strategy may start by its own rule: systems refuse
 /// some tens of thousands, and some of them end the process.

@@ -3,13 +3,16 @@
 use super::Settings;
 use super::keys::{ImageKey, ScheduleKey};
 use super::list::settings_list;
-use super::value::{Field, Value};
+use super::value::{Asked, Kind, Value};
 use crate::error::{InputError, Result};
 use crate::lab::Lab;
 use crate::scene::FILTERS;
 use crate::simd::{Level, levels};
 use std::iter::once;
 use std::sync::LazyLock;
+
+/// The setting of two numbers.
+const SIZE: &str = "size";
 
 /// One setting.
 #[derive(Clone, Copy)]
@@ -26,88 +29,51 @@ pub struct Setting {
     pub about: &'static str,
     /// The value without the option; empty if it depends on the scene or the machine.
     pub default: &'static str,
+    /// The type of its value.
+    pub kind: Kind,
     /// The values that an experiment means by `all`.
     pub all: Option<fn(&Lab) -> Vec<String>>,
-    /// The field that holds its value.
-    pub field: fn(&mut Settings) -> Field<'_>,
     /// Its label in figures where nothing was chosen.
     pub absent: &'static str,
     /// Its label in figures, with `{}` for the value; empty if figures name it in another way.
-    label: &'static str,
+    pub(crate) label: &'static str,
     /// Its part of keys and cell ids, with `{}` for the value; empty for `/NAME-{}`.
-    word: &'static str,
+    pub(crate) word: &'static str,
     /// The first version of the columns that has it.
     pub(crate) since: u32,
-    /// Its place in the nesting of an experiment.
-    nested: u8,
-    is_size: bool,
-    is_part: bool,
-    column: &'static str,
-    second_column: Option<&'static str>,
+    /// Its place in an experiment's nesting: settings with smaller numbers vary more slowly.
+    pub(crate) nested: u8,
+    /// Whether it is only a second column of the setting above.
+    pub(crate) is_part: bool,
+    pub(crate) field: Access,
+    pub(crate) column: &'static str,
+    pub(crate) second_column: Option<&'static str>,
 }
 
-/// The properties in the list of settings.
+pub(crate) type Access = fn(&mut Settings) -> &mut dyn Value;
+
+/// The properties that the list uses.
 impl Setting {
-    /// A setting at this place of an experiment's nesting: those with smaller numbers vary more slowly.
-    pub(crate) const fn nested(nested: u8) -> Self {
-        Self {
-            name: "",
-            changes_image: false,
-            of_light: false,
-            value_name: "",
-            about: "",
-            default: "",
-            all: None,
-            field: |settings| settings.scene.field(),
-            absent: "",
-            label: "",
-            word: "",
-            since: 1,
-            nested,
-            is_size: false,
-            is_part: false,
-            column: "",
-            second_column: None,
-        }
-    }
-
-    /// A second column of the setting above.
-    pub(crate) const fn part() -> Self {
-        Self { is_part: true, ..Self::nested(0) }
-    }
-
-    pub(crate) const fn since(self, since: u32) -> Self {
-        Self { since, ..self }
-    }
-
-    pub(crate) const fn light(self) -> Self {
-        Self { of_light: true, ..self }
-    }
-
-    /// The setting of two numbers, which is named after both.
-    pub(crate) const fn size(self) -> Self {
-        Self { is_size: true, ..self }
-    }
-
-    pub(crate) const fn word(self, word: &'static str) -> Self {
-        Self { word, ..self }
-    }
-
-    pub(crate) const fn label(self, label: &'static str, absent: &'static str) -> Self {
-        Self { label, absent, ..self }
-    }
-
-    pub(crate) const fn all(self, all: fn(&Lab) -> Vec<String>) -> Self {
-        Self { all: Some(all), ..self }
-    }
-
-    pub(crate) const fn option(self, value_name: &'static str, about: &'static str) -> Self {
-        Self { value_name, about, ..self }
-    }
-
-    pub(crate) const fn default(self, default: &'static str) -> Self {
-        Self { default, ..self }
-    }
+    /// A setting without properties.
+    pub(crate) const NEW: Self = Self {
+        name: "",
+        changes_image: false,
+        of_light: false,
+        value_name: "",
+        about: "",
+        default: "",
+        kind: Kind::Name,
+        all: None,
+        absent: "",
+        label: "",
+        word: "",
+        since: 1,
+        nested: 0,
+        is_part: false,
+        field: |settings| &mut settings.scene,
+        column: "",
+        second_column: None,
+    };
 
     pub(crate) fn scenes(lab: &Lab) -> Vec<String> {
         lab.scenes().map(str::to_string).collect()
@@ -141,7 +107,7 @@ impl Setting {
     pub fn set(&self, settings: &mut Settings, text: &str) -> Result<()> {
         match (self.field)(settings).set(text) {
             Some(()) => Ok(()),
-            None if self.is_size => Err(not_a_size(text).into()),
+            None if self.name == SIZE => Err(not_a_size(text).into()),
             None => Err(InputError::new(self.name, text, "is out of range").into()),
         }
     }
@@ -169,41 +135,37 @@ impl Setting {
         let columns = if self.changes_image { image.columns() } else { schedule.columns() };
         let text = |wanted| columns.iter().find(|column| column.name == wanted).and_then(|column| column.text.clone());
         let own = text(self.column)?;
-        let value = match self.second_column.filter(|_| self.is_size).and_then(text) {
+        let value = match self.second_column.filter(|_| self.name == SIZE).and_then(text) {
             Some(height) => format!("{own}x{height}"),
             None => own,
         };
         Some(self.label.replace("{}", &value))
     }
 
-    fn add_to(self, table: &mut Vec<Self>, column: &'static str, changes_image: bool, field: Option<Access>) {
-        match (field, table.last_mut()) {
-            (Some(field), _) if !self.is_part => {
-                let size: Access = |settings| Field::Size(&mut settings.spec);
-                let (name, field) =
-                    if self.is_size { ("size", size) } else { (&*column.replace('_', "-").leak(), field) };
-                table.push(Self { name, column, changes_image, field, ..self });
+    fn add_to(self, table: &mut Vec<Self>, column: &'static str, changes_image: bool, (kind, field): (Kind, Access)) {
+        match table.last_mut().filter(|_| self.is_part) {
+            Some(above) => above.second_column = Some(column),
+            None if self.name == SIZE => {
+                let field: Access = |settings| &mut settings.spec;
+                table.push(Self { changes_image, kind: Kind::Size, field, column, ..self });
             }
-            (_, above) => {
-                if let Some(above) = above {
-                    above.second_column = Some(column);
-                }
+            None => {
+                let name = column.replace('_', "-").leak();
+                table.push(Self { name, changes_image, kind, field, column, ..self });
             }
         }
     }
 }
 
-type Access = fn(&mut Settings) -> Field<'_>;
-
 macro_rules! access {
     (own $field:ident) => {
-        Some(|settings| settings.$field.field())
+        |settings| &mut settings.$field
     };
     (spec $field:ident) => {
-        Some(|settings| settings.spec.$field.field())
+        |settings| &mut settings.spec.$field
     };
     (found $field:ident) => {
-        None
+        Setting::NEW.field
     };
 }
 
@@ -217,7 +179,7 @@ macro_rules! fill {
         $(, when $when:meta)? $(, read $read:meta)?;
     )* }) => { $(
         $(#[$when])?
-        $setting.add_to(&mut $table, stringify!($field), $changes_image, access!($place $field));
+        $setting.add_to(&mut $table, stringify!($field), $changes_image, (<$kind as Asked>::KIND, access!($place $field)));
     )* };
 }
 
@@ -241,7 +203,7 @@ pub fn schedule_columns() -> impl Iterator<Item = &'static str> {
 }
 
 fn not_a_size(text: &str) -> InputError {
-    InputError::new("size", text, "is not a size").allowed("WxH, for example 640x480")
+    InputError::new(SIZE, text, "is not a size").allowed("WxH, for example 640x480")
 }
 
 /// Columns and rows from `WxH`.

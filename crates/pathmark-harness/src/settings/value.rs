@@ -2,76 +2,57 @@
 
 use super::table::parse_size;
 use crate::kernel::Spec;
+use std::str::FromStr;
 
-/// The field and the type of a setting's value.
-pub enum Field<'a> {
+/// The type of a setting's value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
     /// A name.
-    Name(&'a mut String),
+    Name,
     /// A name, or a choice that fits the scene.
-    Fitting(&'a mut Option<String>),
+    Fitting,
     /// Yes or no.
-    Switch(&'a mut bool),
+    Switch,
     /// A number, or none.
-    Count(&'a mut Option<u16>),
+    Count,
     /// Samples per pixel.
-    Samples(&'a mut u32),
+    Samples,
     /// A seed.
-    Seed(&'a mut u64),
+    Seed,
     /// Workers.
-    Workers(&'a mut usize),
+    Workers,
     /// Columns and rows.
-    Size(&'a mut Spec),
+    Size,
 }
 
-impl Field<'_> {
-    pub(super) fn set(self, text: &str) -> Option<()> {
-        match self {
-            Self::Name(name) => *name = text.to_string(),
-            Self::Fitting(name) => *name = Some(text.to_string()),
-            Self::Switch(switch) => *switch = text.parse().ok()?,
-            Self::Count(count) => *count = Some(text.parse().ok()?),
-            Self::Samples(spp) => *spp = text.parse().ok()?,
-            Self::Seed(seed) => *seed = text.parse().ok()?,
-            Self::Workers(threads) => *threads = text.parse().ok()?,
-            Self::Size(spec) => (spec.width, spec.height) = parse_size(text).ok()?,
-        }
-        Some(())
-    }
-
-    pub(super) fn show(self) -> String {
-        match self {
-            Self::Name(name) => name.clone(),
-            Self::Fitting(name) => name.clone().unwrap_or_default(),
-            Self::Switch(switch) => switch.to_string(),
-            Self::Count(count) => count.map(|count| count.to_string()).unwrap_or_default(),
-            Self::Samples(spp) => spp.to_string(),
-            Self::Seed(seed) => seed.to_string(),
-            Self::Workers(threads) => threads.to_string(),
-            Self::Size(spec) => format!("{}x{}", spec.width, spec.height),
-        }
-    }
+/// A value as text.
+pub(crate) trait Value {
+    fn set(&mut self, text: &str) -> Option<()>;
+    /// Empty if it is left to the scene or the estimator.
+    fn show(&self) -> String;
 }
 
 /// A type of the list of settings.
-pub trait Value {
+pub trait Asked {
     /// Its type in a row and in keys.
     type Column;
     /// The name of that type.
     const COLUMN: &'static str;
+    const KIND: Kind;
 
     fn column(&self) -> Self::Column;
     fn of(column: Self::Column) -> Self;
     /// A column as text; `None` if it is empty on purpose.
     fn text(column: &Self::Column) -> Option<String>;
-    fn field(&mut self) -> Field<'_>;
 }
 
-/// Types that rows hold as they are.
-macro_rules! value {
-    ($kind:ty, $field:ident, $text:expr) => {
-        impl Value for $kind {
+/// A type that rows hold as it is, and its text there.
+macro_rules! asked {
+    ($type:ty, $kind:ident, $text:expr) => {
+        impl Asked for $type {
             type Column = Self;
-            const COLUMN: &'static str = stringify!($kind);
+            const COLUMN: &'static str = stringify!($type);
+            const KIND: Kind = Kind::$kind;
 
             fn column(&self) -> Self {
                 self.clone()
@@ -85,25 +66,39 @@ macro_rules! value {
                 let text: fn(&Self) -> Option<String> = $text;
                 text(column)
             }
-
-            fn field(&mut self) -> Field<'_> {
-                Field::$field(self)
-            }
         }
     };
+    ($($type:ty, $kind:ident, $text:expr;)*) => { $(
+        asked!($type, $kind, $text);
+
+        impl Value for $type {
+            fn set(&mut self, text: &str) -> Option<()> {
+                *self = text.parse().ok()?;
+                Some(())
+            }
+
+            fn show(&self) -> String {
+                self.to_string()
+            }
+        }
+    )* };
 }
 
-value!(String, Name, |name| Some(name.clone()));
-value!(bool, Switch, |switch| switch.then(|| switch.to_string()));
-value!(Option<u16>, Count, |count| count.map(|count| count.to_string()));
-value!(u32, Samples, |spp| Some(spp.to_string()));
-value!(u64, Seed, |seed| Some(seed.to_string()));
-value!(usize, Workers, |threads| Some(threads.to_string()));
+asked! {
+    String, Name, |name| Some(name.clone());
+    bool, Switch, |switch| switch.then(|| switch.to_string());
+    u32, Samples, |spp| Some(spp.to_string());
+    u64, Seed, |seed| Some(seed.to_string());
+    usize, Workers, |threads| Some(threads.to_string());
+}
+
+asked!(Option<u16>, Count, |count| count.map(|count| count.to_string()));
 
 /// Rows keep the name that was chosen, or nothing.
-impl Value for Option<String> {
+impl Asked for Option<String> {
     type Column = String;
     const COLUMN: &'static str = "String";
+    const KIND: Kind = Kind::Fitting;
 
     fn column(&self) -> String {
         self.clone().unwrap_or_default()
@@ -116,8 +111,27 @@ impl Value for Option<String> {
     fn text(column: &String) -> Option<String> {
         Self::of(column.clone())
     }
+}
 
-    fn field(&mut self) -> Field<'_> {
-        Field::Fitting(self)
+impl<T: FromStr + ToString> Value for Option<T> {
+    fn set(&mut self, text: &str) -> Option<()> {
+        *self = Some(text.parse().ok()?);
+        Some(())
+    }
+
+    fn show(&self) -> String {
+        self.as_ref().map(ToString::to_string).unwrap_or_default()
+    }
+}
+
+/// Columns and rows.
+impl Value for Spec {
+    fn set(&mut self, text: &str) -> Option<()> {
+        (self.width, self.height) = parse_size(text).ok()?;
+        Some(())
+    }
+
+    fn show(&self) -> String {
+        format!("{}x{}", self.width, self.height)
     }
 }
