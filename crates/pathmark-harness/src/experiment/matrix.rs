@@ -187,7 +187,7 @@ impl<'a> Product<'a> {
                 settings.spp.saturating_mul(u32::try_from(settings.workers(settings.threads)).unwrap_or(u32::MAX));
         }
         let setup = self.definition.lab.prepare(settings).map_err(|error| self.at_field(error))?;
-        check_processes(&self.definition.lab, setup.settings()).map_err(|error| self.at_field(error))?;
+        check_processes(&setup).map_err(|error| self.at_field(error))?;
         if self.matrix.curve {
             setup.check_rounds().map_err(|error| self.at_field(error))?;
         }

@@ -3,8 +3,7 @@
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use crate::image_io::{self, Image};
-use crate::lab::Lab;
-use crate::measure::{Record, SETTINGS, Settings};
+use crate::measure::{Record, SETTINGS, Settings, Setup};
 use serde_json::Value;
 use std::env;
 use std::ffi::OsString;
@@ -92,8 +91,9 @@ fn record(printed: &[u8]) -> Option<Record> {
 }
 
 /// Refuses settings with which processes cannot start, share jobs or give their output.
-pub(super) fn check_processes(lab: &Lab, settings: &Settings) -> Result<()> {
-    let (ranks, rule) = match (settings.ranks, &settings.rank_rule) {
+pub(super) fn check_processes(setup: &Setup) -> Result<()> {
+    let settings = setup.settings();
+    let (ranks, rule) = match (settings.ranks, setup.rank_rule()) {
         (None, None) => return Ok(()),
         (Some(ranks), Some(rule)) => (ranks, rule),
         (Some(ranks), None) => {
@@ -101,14 +101,15 @@ pub(super) fn check_processes(lab: &Lab, settings: &Settings) -> Result<()> {
             return Err(error.allowed("ranks together with rank-rule").into());
         }
         (None, Some(rule)) => {
-            let error = InputError::new("rank-rule", rule, "shares jobs among processes, but there are none");
+            let problem = "shares jobs among processes, but there are none";
+            let error = InputError::new("rank-rule", rule.to_string(), problem);
             return Err(error.allowed("rank-rule together with ranks").into());
         }
     };
     if ranks == 0 {
         return Err(InputError::new("ranks", "0", "is out of range").allowed("1 or more").into());
     }
-    lab.rank_rule("rank-rule", rule)?.check(ranks.into())?;
+    rule.check(ranks.into())?;
     if settings.output == Settings::default().output {
         return Ok(());
     }
