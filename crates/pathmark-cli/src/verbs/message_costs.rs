@@ -4,7 +4,6 @@ use crate::cluster::{Cluster, MessageCost, MessageCosts};
 use crate::console::output::{print, print_json};
 use crate::error::Result;
 use clap::Args;
-use std::env;
 use std::path::PathBuf;
 
 /// `mpiexec -n 2 pathmark message-costs`
@@ -18,14 +17,8 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// The library that the user names in the option or the environment; `None` if the program is to find one.
-pub(super) fn library(option: Option<&PathBuf>) -> Option<PathBuf> {
-    let named = option.cloned().or_else(|| env::var_os("PATHMARK_MPI").map(PathBuf::from));
-    named.filter(|path| path.as_os_str() != "auto")
-}
-
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
-    let cluster = Cluster::begin(library(arguments.mpi.as_ref()).as_deref())?;
+    let cluster = Cluster::begin(arguments.mpi.as_deref())?;
     let Some(told) = cluster.message_costs()? else { return Ok(()) };
     if arguments.json {
         return print_json(&told);

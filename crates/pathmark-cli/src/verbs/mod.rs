@@ -41,6 +41,7 @@ use crate::console::Talk;
 use crate::error::Result;
 use crate::lab::Lab;
 use clap::Subcommand;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 #[derive(Subcommand)]
@@ -94,7 +95,10 @@ pub(super) enum Verb {
     /// Print a manual page.
     Man(man::Arguments),
     #[command(hide = true, about = crate::experiment::CELL_ABOUT)]
-    Cell,
+    Cell {
+        /// The cell's description, for one of several processes
+        file: Option<PathBuf>,
+    },
 }
 
 impl Verb {
@@ -125,7 +129,7 @@ impl Verb {
             Self::List(arguments) => list::run(&arguments, lab),
             Self::Completions(arguments) => completions::run(&arguments),
             Self::Man(arguments) => man::run(&arguments),
-            Self::Cell => crate::experiment::child_main(lab),
+            Self::Cell { file } => crate::experiment::child_main(lab, file.as_deref()),
         }
     }
 }
