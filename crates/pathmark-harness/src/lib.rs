@@ -22,6 +22,7 @@ pub mod lock;
 pub mod machine;
 pub mod measure;
 pub mod metric;
+mod settings;
 pub mod shell;
 pub mod simulate;
 mod temporary;

@@ -3,7 +3,7 @@
 
 use super::estimated::LEVEL;
 use super::naming::{Part, joined, needed};
-use super::results::{Results, prefixed};
+use super::results::Results;
 use super::rows::{Row, group, values};
 use super::schedule::{crew, strategy};
 use crate::analysis::Interval;
@@ -13,8 +13,9 @@ use crate::analysis::mse::over_seeds;
 use crate::analysis::price::{Law, Renderer};
 use crate::error::{InputError, Result};
 use crate::experiment::{EXTERNAL, law_of};
-use crate::measure::{ImageKey, ScheduleKey};
+use crate::measure::{ImageKey, SETTINGS, ScheduleKey, Setting};
 use std::collections::{BTreeMap, BTreeSet};
+use std::iter::once;
 
 /// An estimator with a sampler and a schedule, on a scene.
 pub(super) struct Contender {
@@ -210,31 +211,21 @@ fn names(rows: &[&Row]) -> Vec<String> {
         |row| if row.biased && row.max_depth.is_none() { "biased".to_string() } else { String::new() },
         |row| crew(strategy(row), row.threads),
     ];
-    let rest: [Part<Row>; 11] = [
-        |row| row.camera_rays.map_or_else(String::new, |rays| format!("{rays} camera rays")),
-        |row| row.clamp.clone(),
-        |row| prefixed("filter ", &row.filter),
-        |row| prefixed("epsilon ", &row.epsilon),
-        |row| row.precision.clone(),
-        |row| format!("{}x{}", row.width, row.height),
-        |row| row.decomposition.clone(),
-        |row| row.output.clone(),
-        |row| row.effects.clone(),
-        |row| row.accelerator.clone(),
-        |row| if row.adaptive { "adaptive".to_string() } else { String::new() },
-    ];
+    let label = |setting: &Setting, row: &Row| setting.label_of(&row.image, &row.schedule.key).unwrap_or_default();
     // Another program has only a name.
     let own: Vec<&Row> = rows.iter().copied().filter(|row| row.strategy != EXTERNAL).collect();
     let differs = |part: &Part<Row>| own.iter().map(|row| part(row)).collect::<BTreeSet<_>>().len() > 1;
     let mut parts: Vec<Part<Row>> = main[1..].iter().copied().filter(differs).collect();
     // A sampler without lane code makes kernels differ that nobody compares, so kernels are named only where needed.
     let who = |row: &Row| (row.estimator.clone(), row.sampler.clone(), row.threads);
-    parts.extend(needed(&own, who, &[|row: &Row| row.kernel_name()]));
+    let kernel: Part<Row> = |row| row.kernel_name();
+    parts.extend(needed(&own, who, [kernel], |part, row| part(row)));
     let told = |row: &Row| (row.scene.clone(), main[0](row), parts.iter().map(|part| part(row)).collect::<Vec<_>>());
-    let more = needed(&own, told, &rest);
+    let more = needed(&own, told, SETTINGS.iter().filter(|setting| setting.is_label()), label);
     let name = |row: &Row| {
-        let others = parts.iter().chain(&more).filter(|_| row.strategy != EXTERNAL).map(|part| part(row));
-        let words = std::iter::once(main[0](row)).chain(others).filter(|word| !word.is_empty());
+        let others = parts.iter().map(|part| part(row)).chain(more.iter().map(|setting| label(setting, row)));
+        let words =
+            once(main[0](row)).chain(others.filter(|_| row.strategy != EXTERNAL)).filter(|word| !word.is_empty());
         words.collect::<Vec<String>>().join(" + ")
     };
     rows.iter().map(|row| name(row)).collect()

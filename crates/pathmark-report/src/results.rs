@@ -10,7 +10,7 @@ use crate::experiment::{Definition, EXTERNAL, Profile, RunFile, read_records, re
 use crate::image_io::{self, Image};
 use crate::input::read_text;
 use crate::lab::Lab;
-use crate::measure::{Doubts, ImageKey, LeftOut, Record, TraceFile};
+use crate::measure::{Doubts, ImageKey, LeftOut, Record, SETTINGS, Setting, TraceFile};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -31,7 +31,7 @@ pub struct Results {
     pub out: PathBuf,
     rows: Vec<Row>,
     /// The properties that distinguish series of images, beside samples and seed.
-    image_parts: Vec<Part<ImageKey>>,
+    image_parts: Vec<&'static Setting>,
 }
 
 impl Results {
@@ -151,7 +151,7 @@ impl Results {
     /// The properties in which the experiment's images differ, apart from samples and seed; empty if they do not
     /// differ.
     pub(super) fn series_name(&self, row: &Row) -> String {
-        joined(self.image_parts.iter().map(|part| part(&row.image)))
+        joined(self.image_parts.iter().map(|setting| label(setting, row)))
     }
 
     /// The properties in which the images differ, or the estimator if they do not.
@@ -244,7 +244,7 @@ fn named(records: Vec<Record>) -> Vec<Row> {
             (record.threads, record.ranks, record.rank_rule.clone()),
         )
     };
-    let parts = needed(&records.iter().collect::<Vec<_>>(), told, &parts);
+    let parts = needed(&records.iter().collect::<Vec<_>>(), told, parts, |part, record| part(record));
     let row = |record: Record, as_written: Option<Record>| {
         let words = std::iter::once(strategy(&record).to_string()).chain(parts.iter().map(|part| part(&record)));
         let schedule = Schedule { name: joined(words), key: record.schedule_key() };
@@ -257,42 +257,21 @@ fn named(records: Vec<Record>) -> Vec<Row> {
     rows.collect()
 }
 
-/// A value with its name; nothing if it is empty.
-pub(super) fn prefixed(name: &str, value: &str) -> String {
-    if value.is_empty() { String::new() } else { format!("{name}{value}") }
+/// A setting of a row's image, in words.
+fn label(setting: &Setting, row: &Row) -> String {
+    setting.label_of(&row.image, &row.schedule.key).unwrap_or_else(|| setting.absent.to_string())
 }
 
-/// The properties to name images by. Scene, estimator and sampler are named wherever they differ, the others only where
+/// The settings to name images by. Scene, estimator and sampler are named wherever they differ, the others only where
 /// nothing else distinguishes two images.
-fn image_parts(rows: &[Row]) -> Vec<Part<ImageKey>> {
-    let main: [Part<ImageKey>; 3] =
-        [|image| image.scene.clone(), |image| image.estimator.clone(), |image| image.sampler.clone()];
-    let rest: [Part<ImageKey>; 9] = [
-        |image| format!("{}x{}", image.width, image.height),
-        |image| image.max_depth.map_or_else(String::new, |depth| format!("depth {depth}")),
-        |image| image.camera_rays.map_or_else(|| "one camera ray".to_string(), |rays| format!("{rays} camera rays")),
-        |image| image.roulette.clone(),
-        |image| image.clamp.clone(),
-        |image| if image.filter.is_empty() { "own filter".to_string() } else { prefixed("filter ", &image.filter) },
-        |image| if image.epsilon.is_empty() { "no epsilon".to_string() } else { prefixed("epsilon ", &image.epsilon) },
-        |image| image.precision.clone(),
-        |image| if image.adaptive { "adaptive".to_string() } else { "even".to_string() },
-    ];
-    let images: Vec<&ImageKey> = rows.iter().map(|row| &row.image).collect();
-    let told = |image: &ImageKey| {
-        (
-            image.scene.clone(),
-            image.scene_hash.clone(),
-            image.estimator.clone(),
-            image.sampler.clone(),
-            image.spp,
-            image.seed,
-        )
+fn image_parts(rows: &[Row]) -> Vec<&'static Setting> {
+    let rows: Vec<&Row> = rows.iter().collect();
+    let differs = |setting: &&Setting| rows.iter().any(|row| label(setting, row) != label(setting, rows[0]));
+    let main = ["scene", "estimator", "sampler"].into_iter().filter_map(Setting::named).filter(differs);
+    let told = |row: &Row| {
+        let ImageKey { scene, scene_hash, estimator, sampler, spp, seed, .. } = row.image.clone();
+        (scene, scene_hash, estimator, sampler, spp, seed)
     };
-    let differs = |part: &Part<ImageKey>| {
-        images.iter().any(|image| images.first().is_some_and(|first| part(first) != part(image)))
-    };
-    let mut parts: Vec<Part<ImageKey>> = main.into_iter().filter(differs).collect();
-    parts.extend(needed(&images, told, &rest));
-    parts
+    let labelled = SETTINGS.iter().filter(|setting| setting.changes_image && setting.is_label());
+    main.chain(needed(&rows, told, labelled, label)).collect()
 }

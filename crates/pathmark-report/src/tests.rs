@@ -6,7 +6,8 @@ use super::results::Results;
 use crate::error::Error;
 use crate::experiment::{Definition, RunFile, experiments};
 use crate::lab::Lab;
-use crate::measure::{Record, SCHEMA};
+use crate::measure::{Record, SCHEMA, SETTINGS, Setting};
+use serde_json::Value;
 use std::cell::Cell;
 use std::collections::BTreeSet;
 use tempfile::TempDir;
@@ -121,60 +122,54 @@ fn rows_that_nothing_tells_apart_are_refused() {
     assert!(results(&["speedup"], "", rows).is_ok());
 }
 
-/// One change for each axis of images that figures once ignored.
-const FORGOTTEN: [fn(&mut Record); 6] = [
-    |row| row.max_depth = Some(3),
-    |row| row.camera_rays = Some(4),
-    |row| row.roulette = "throughput:2".to_string(),
-    |row| row.clamp = "subpixel".to_string(),
-    |row| row.precision = "f32".to_string(),
-    |row| row.width = 16,
-];
+/// The row with another value of a setting.
+fn changed(setting: &Setting, row: &Record) -> Record {
+    let column = setting.columns().next().unwrap();
+    let mut columns = serde_json::to_value(row).unwrap();
+    let other = match &columns[column] {
+        Value::Bool(own) => Value::from(!own),
+        Value::Number(own) => Value::from(own.as_u64().unwrap() + 1),
+        Value::String(own) => Value::from(format!("{own}-other")),
+        _ => Value::from(7),
+    };
+    columns[column] = other;
+    serde_json::from_value(columns).unwrap()
+}
 
 #[test]
-fn speedups_compare_the_same_image_on_every_axis() {
-    for (index, change) in FORGOTTEN.iter().enumerate() {
+fn speedups_compare_the_same_image_with_every_setting() {
+    for setting in SETTINGS.iter().filter(|setting| setting.changes_image) {
         // Two images, one of which takes a hundred times as long; the pool renders each twice as fast as serial.
         let mut rows = Vec::new();
         for (repetition, slow) in [(0, false), (1, false), (0, true), (1, true)] {
             for (strategy, threads, seconds) in [("serial", 1, 2.0), ("pool", 2, 1.0)] {
                 let mut row = Record { repetition, threads, strategy: strategy.to_string(), ..row() };
                 row.makespan_s = Some(if slow { 100.0 * seconds } else { seconds });
-                if slow {
-                    change(&mut row);
-                }
-                rows.push(row);
+                rows.push(if slow { changed(setting, &row) } else { row });
             }
         }
         let results = results(&["speedup"], "", rows).unwrap();
         let found = results.serial().unwrap().speedups();
-        assert_eq!(found.len(), 1, "axis {index}");
+        assert_eq!(found.len(), 1, "{}", setting.name);
         let (value, interval) = (found[0].1.value, found[0].1.interval);
-        assert_eq!((value, interval.low, interval.high), (2.0, 2.0, 2.0), "axis {index}");
+        assert_eq!((value, interval.low, interval.high), (2.0, 2.0, 2.0), "{}", setting.name);
     }
 }
 
 #[test]
-fn contenders_are_told_apart_on_every_axis() {
-    let schedules: [fn(&mut Record); 4] = [
-        |row| row.output = "locked".to_string(),
-        |row| row.decomposition = "rows".to_string(),
-        |row| row.effects = "all".to_string(),
-        |row| row.accelerator = "sah".to_string(),
-    ];
-    for (index, change) in FORGOTTEN.iter().chain(&schedules).enumerate() {
+fn contenders_are_told_apart_by_every_setting_with_a_label() {
+    // Each scene has its own contenders.
+    for setting in SETTINGS.iter().filter(|setting| setting.is_label() && setting.name != "scene") {
         let mut rows = Vec::new();
         for (seed, spp) in [(1, 4), (1, 8), (2, 4), (2, 8), (3, 4), (3, 8)] {
-            let mut plain = Record { spp, seed, ..row() };
+            let mut plain = Record { spp, seed, pilot_s: Some(0.0), ..row() };
             plain.mse = Some(0.1 / f64::from(spp) * (1.0 + seed as f64));
             plain.makespan_s = Some(f64::from(spp) * (1.0 + 0.1 * seed as f64));
-            let mut other = plain.clone();
-            change(&mut other);
-            rows.extend([plain, other]);
+            rows.extend([changed(setting, &plain), plain]);
         }
         let results = results(&["price-list"], "", rows).unwrap();
         let names: BTreeSet<String> = contenders(&results).unwrap().into_values().flatten().map(|c| c.name).collect();
-        assert_eq!(names.len(), 2, "axis {index}: {names:?}");
+        assert_eq!(names.len(), 2, "{}: {names:?}", setting.name);
     }
 }
 

@@ -4,7 +4,7 @@ use crate::error::{Error, InputError, Result};
 use crate::input::{locate, read_text};
 use crate::kernel::Spec;
 use crate::lab::Lab;
-use crate::measure::{AXES, Axis, Field, LARGEST_SEED, Settings, THREAD_PER_ROW};
+use crate::measure::{Kind, LARGEST_SEED, SETTINGS, Setting, Settings, THREAD_PER_ROW};
 use clap::builder::ValueParser;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
@@ -13,7 +13,7 @@ use std::path::Path;
 
 /// The values of the options for *what* is rendered, or of those for pieces and workers.
 pub(super) struct Options<const WHAT: bool> {
-    values: Vec<(&'static Axis, String)>,
+    values: Vec<(&'static Setting, String)>,
 }
 
 /// The options for *what* is rendered.
@@ -63,20 +63,20 @@ fn device_option() -> Arg {
 }
 
 /// The check that clap makes before the program reads a value.
-fn parser(axis: &Axis) -> ValueParser {
-    match (axis.field)(&mut Settings::default()) {
-        Field::Switch(_) => value_parser!(bool),
-        Field::Count(_) => value_parser!(u16).into(),
-        Field::Samples(_) => value_parser!(u32).into(),
-        Field::Seed(_) => value_parser!(u64).into(),
-        Field::Workers(_) => value_parser!(usize).into(),
-        Field::Name(_) | Field::Fitting(_) | Field::Size(_) => ValueParser::string(),
+fn parser(axis: &Setting) -> ValueParser {
+    match axis.kind {
+        Kind::Switch => value_parser!(bool),
+        Kind::Count => value_parser!(u16).into(),
+        Kind::Samples => value_parser!(u32).into(),
+        Kind::Seed => value_parser!(u64).into(),
+        Kind::Workers => value_parser!(usize).into(),
+        Kind::Name | Kind::Fitting | Kind::Size => ValueParser::string(),
     }
 }
 
 impl<const WHAT: bool> Options<WHAT> {
-    fn axes() -> impl Iterator<Item = &'static Axis> {
-        AXES.iter().filter(|axis| !axis.about.is_empty() && (axis.changes_image || axis.of_light) == WHAT)
+    fn axes() -> impl Iterator<Item = &'static Setting> {
+        SETTINGS.iter().filter(|axis| !axis.about.is_empty() && (axis.changes_image || axis.of_light) == WHAT)
     }
 
     fn value(&self, name: &str) -> Option<&str> {
@@ -107,7 +107,7 @@ impl<const WHAT: bool> Args for Options<WHAT> {
 impl<const WHAT: bool> FromArgMatches for Options<WHAT> {
     fn from_arg_matches(matches: &ArgMatches) -> std::result::Result<Self, clap::Error> {
         let device = if WHAT { matches.get_one::<String>(DEVICE) } else { None };
-        let given = |axis: &'static Axis| {
+        let given = |axis: &'static Setting| {
             let value = matches.get_raw(axis.name)?.next()?.to_str()?.to_string();
             let is_chosen = matches.value_source(axis.name) == Some(ValueSource::CommandLine);
             match device {
@@ -155,7 +155,7 @@ fn default_estimator(lab: &Lab, scene: &str) -> Result<String> {
 fn check_for_workload(settings: &Settings) -> Result<()> {
     let mut base = Settings::default();
     base.spec.estimator.clear();
-    let mut of_light = AXES.iter().filter(|axis| axis.of_light);
+    let mut of_light = SETTINGS.iter().filter(|axis| axis.of_light);
     match of_light.find(|axis| axis.show(settings) != axis.show(&base)) {
         None => Ok(()),
         Some(axis) => {
@@ -202,5 +202,20 @@ impl Axes {
             return Err(InputError::new("decomposition", cut, problem).allowed("rows, or no value").into());
         }
         Ok(settings)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_setting_with_a_help_is_an_option_with_that_help() {
+        let options = Axes::augment_args(Command::new("render"));
+        for setting in SETTINGS.iter().filter(|setting| !setting.about.is_empty()) {
+            let option =
+                options.get_arguments().find(|option| option.get_long() == Some(setting.name)).expect(setting.name);
+            assert_eq!(option.get_help().map(ToString::to_string).as_deref(), Some(setting.about));
+        }
     }
 }

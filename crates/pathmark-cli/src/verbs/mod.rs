@@ -34,6 +34,7 @@ use crate::error::Result;
 use crate::lab::Lab;
 use clap::Subcommand;
 pub(super) use renamed::with_new_names;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 #[derive(Subcommand)]
@@ -74,7 +75,10 @@ pub(super) enum Verb {
     #[command(subcommand)]
     Shell(shell::Shell),
     #[command(hide = true, about = crate::experiment::CELL_ABOUT)]
-    Cell,
+    Cell {
+        /// The cell's description, for one of several processes
+        file: Option<PathBuf>,
+    },
 }
 
 impl Verb {
@@ -97,7 +101,7 @@ impl Verb {
             Self::Shell(what) => what.run(),
             Self::New(arguments) => new::run(&arguments),
             Self::List(arguments) => list::run(&arguments, lab),
-            Self::Cell => crate::experiment::child_main(lab),
+            Self::Cell { file } => crate::experiment::child_main(lab, file.as_deref()),
         }
     }
 }

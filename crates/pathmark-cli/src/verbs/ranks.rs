@@ -8,7 +8,6 @@ use crate::lab::{Lab, RankRule};
 use crate::measure::{Outcome, Record, Setup};
 use clap::Args;
 use serde::Serialize;
-use std::env;
 use std::path::PathBuf;
 
 /// The options of a render by several processes.
@@ -28,13 +27,9 @@ pub(super) struct Ranks {
 #[derive(Serialize)]
 pub(super) struct Told {
     #[serde(skip)]
-    ranks: usize,
-    #[serde(skip)]
-    rank_rule: String,
-    #[serde(skip)]
-    mpi: String,
-    gather_s: f64,
-    by_rank: Vec<RankRow>,
+    rule: RankRule,
+    #[serde(flatten)]
+    tally: Tally,
 }
 
 /// A record with the statistics of the ranks.
@@ -52,15 +47,7 @@ pub(super) fn with_record<'a>(told: &'a Told, record: &'a Record) -> WithRecord<
 
 /// Enters ranks, rule and MPI library into a record.
 pub(super) fn label(told: &Told, record: &mut Record) {
-    record.ranks = u16::try_from(told.ranks).ok();
-    record.rank_rule.clone_from(&told.rank_rule);
-    record.mpi.clone_from(&told.mpi);
-}
-
-/// The library that the user names in the option or the environment; `None` if the program is to find one.
-pub(super) fn library(option: Option<&PathBuf>) -> Option<PathBuf> {
-    let named = option.cloned().or_else(|| env::var_os("PATHMARK_MPI").map(PathBuf::from));
-    named.filter(|path| path.as_os_str() != "auto")
+    told.tally.label(&told.rule, record);
 }
 
 impl Ranks {
@@ -78,29 +65,21 @@ impl Ranks {
         spp: u32,
         console: &Console,
     ) -> Result<Option<(Setup, Outcome, Told)>> {
-        let library = library(self.mpi.as_ref());
-        let cluster = Cluster::begin(library.as_deref())?;
+        let cluster = Cluster::begin(self.mpi.as_deref())?;
         let done = if until.is_multi_round() {
             cluster.render_in_rounds(setup, rule, |setup, extend| rounds::render(until, setup, spp, console, extend))?
         } else {
             let done = cluster.render(&setup, rule)?;
             done.map(|(outcome, tally)| ((setup, outcome), tally))
         };
-        Ok(done.map(|((setup, outcome), tally)| (setup, outcome, Told::new(rule, tally))))
-    }
-}
-
-impl Told {
-    fn new(rule: &RankRule, tally: Tally) -> Self {
-        let Tally { ranks, gather_s, library } = tally;
-        Self { ranks: ranks.len(), rank_rule: rule.to_string(), mpi: library, gather_s, by_rank: ranks }
+        Ok(done.map(|((setup, outcome), tally)| (setup, outcome, Told { rule: rule.clone(), tally })))
     }
 }
 
 /// The statistics of each rank, in lines.
-pub(super) fn told(told: &Told) -> String {
-    let Told { ranks, rank_rule, mpi, gather_s, by_rank } = told;
-    let head = format!("{ranks} ranks of {mpi} by {rank_rule}, gathered in {:.1} ms", 1e3 * gather_s);
+pub(super) fn told(Told { rule, tally }: &Told) -> String {
+    let Tally { ranks: by_rank, gather_s, library } = tally;
+    let head = format!("{} ranks of {library} by {rule}, gathered in {:.1} ms", by_rank.len(), 1e3 * gather_s);
     let lines = by_rank.iter().map(|RankRow { rank, jobs, requests, busy_s, waiting_s }| {
         format!("rank {rank}: {jobs} jobs in {requests} requests, {busy_s:.3} s busy, {waiting_s:.3} s waiting")
     });

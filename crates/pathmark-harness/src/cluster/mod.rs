@@ -13,15 +13,15 @@ use crate::digest;
 use crate::error::{Error, InputError, Result};
 use crate::kernel::REVISION;
 use crate::lab::RankRule;
-use crate::measure::{MergedShare, Outcome, Setup};
+use crate::measure::{MergedShare, Outcome, Record, Setup};
 use hand_out::HandOut;
 pub use message_costs::{MessageCost, MessageCosts};
 use pathmark_mpi::{MpiError, World};
 use serde::Serialize;
-use std::io;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::slice::from_ref;
+use std::{env, io};
 
 /// Statistics of one rank.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -39,13 +39,15 @@ pub struct RankRow {
 }
 
 /// Statistics of all ranks, beside the film.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Tally {
     /// Statistics of each rank, over all rounds.
+    #[serde(rename = "by_rank")]
     pub ranks: Vec<RankRow>,
     /// Seconds to bring all pieces to rank 0, over all rounds.
     pub gather_s: f64,
     /// Name and version of the MPI library.
+    #[serde(skip)]
     pub library: String,
 }
 
@@ -69,9 +71,11 @@ fn failed(error: MpiError) -> Error {
 }
 
 impl Cluster {
-    /// Opens the MPI library that the user names, or one that systems usually have.
+    /// Opens the MPI library that the user names, here or in `PATHMARK_MPI`, or one that systems usually have.
     pub fn begin(library: Option<&Path>) -> Result<Self> {
-        Ok(Self { world: World::begin(library).map_err(failed)? })
+        let named = library.map(PathBuf::from).or_else(|| env::var_os("PATHMARK_MPI").map(PathBuf::from));
+        let named = named.filter(|path| path.as_os_str() != "auto");
+        Ok(Self { world: World::begin(named.as_deref()).map_err(failed)? })
     }
 
     /// Whether this is rank 0, which has the image in the end and reports for all.
@@ -175,6 +179,13 @@ impl Cluster {
 }
 
 impl Tally {
+    /// Enters ranks, rule and MPI library into a record.
+    pub fn label(&self, rule: &RankRule, record: &mut Record) {
+        record.ranks = u16::try_from(self.ranks.len()).ok();
+        record.rank_rule = rule.to_string();
+        record.mpi.clone_from(&self.library);
+    }
+
     fn new(world: &World) -> Self {
         let row = |rank| RankRow { rank, jobs: 0, requests: 0, busy_s: 0.0, waiting_s: 0.0 };
         Self { ranks: (0..world.size()).map(row).collect(), gather_s: 0.0, library: world.version().to_string() }

@@ -2,7 +2,7 @@
 
 use super::{External, SceneVersion};
 use crate::error::{InputError, Result};
-use crate::measure::{AXES, Axis, ImageKey, Settings, Setup, available_threads, schedule_name};
+use crate::measure::{ImageKey, SETTINGS, ScheduleKey, Setting, Settings, Setup, available_threads, schedule_name};
 
 /// One combination of the experiment's matrix.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -81,20 +81,7 @@ impl Cell {
         let mut settings = setup.settings().clone();
         settings.threads = setup.threads();
         let spec = &settings.spec;
-        let mut schedule = format!("{}/{}/{}t", settings.decomposition, settings.strategy, settings.threads);
-        if let Some((ranks, rule)) = settings.ranks.zip(settings.rank_rule.as_ref()) {
-            schedule = format!("{schedule}/{ranks}ranks/{rule}");
-        }
-        if settings.output != Settings::default().output {
-            schedule = format!("{schedule}/{}", settings.output);
-        }
-        // An id names only settings that differ from the default.
-        for axis in AXES.iter().filter(|axis| axis.of_light && !axis.changes_image) {
-            let value = axis.show(&settings);
-            if value != axis.show(&Settings::default()) {
-                schedule = format!("{schedule}/{}-{value}", axis.name);
-            }
-        }
+        let schedule = ScheduleKey::id_of(&settings);
         let point = |spp: u32| {
             let image = ImageKey { spp, ..setup.image_key() }.to_string();
             CellPoint { id: format!("{image}/{schedule}{of}"), spp, image }
@@ -108,7 +95,7 @@ impl Cell {
     }
 
     /// Its value on an axis, as filters compare it.
-    pub fn shown(&self, axis: &Axis) -> String {
+    pub fn shown(&self, axis: &Setting) -> String {
         let strategy = schedule_name(&self.settings.strategy, &self.settings.decomposition).to_string();
         axis.show(&Settings { strategy, ..self.settings.clone() })
     }
@@ -116,9 +103,9 @@ impl Cell {
     /// Whether it has one of the values that a filter `field=value,value...` asks for.
     pub fn matches(&self, filter: &str) -> Result<bool> {
         let pair = filter.split_once('=');
-        let known = pair.and_then(|(field, value)| Some((Axis::named(field)?, value)));
+        let known = pair.and_then(|(field, value)| Some((Setting::named(field)?, value)));
         known.map(|(axis, values)| values.split(',').any(|value| self.shown(axis) == value)).ok_or_else(|| {
-            let names = AXES.each_ref().map(|axis| axis.name);
+            let names: Vec<&str> = SETTINGS.iter().map(|setting| setting.name).collect();
             InputError::new("filter", filter, "does not begin with the name of an axis")
                 .allowed(format!("{}=VALUE", names.join("=VALUE, ")))
                 .into()

@@ -11,10 +11,12 @@ use super::process_group;
 use super::processes::run_processes;
 use super::time_limit::timed_out;
 use super::{External, HalfFile, SceneVersion};
+use crate::cluster::Cluster;
 use crate::error::{Error, InputError, Result};
 use crate::film::SAMPLE_BLOCK;
 use crate::film_file::read_film;
 use crate::image_io::{self, Image};
+use crate::input::read_text;
 use crate::kernel::DEVICE_NAME;
 use crate::lab::Lab;
 use crate::measure::{
@@ -124,14 +126,14 @@ impl CellJob {
     }
 
     fn run(&self, lab: &Lab) -> Result<Vec<Record>> {
+        if let Some(ranks) = self.settings.ranks {
+            return self.by_processes(lab, ranks);
+        }
         let references = self.references.as_ref().map(|halves| self.read_references(halves)).transpose()?;
         if let Some((external, folder)) = &self.external {
             // This process did its part, so the row's error is the program's alone.
             let rows = self.other_program(lab, external, folder, references.as_ref());
             return Ok(rows.unwrap_or_else(|error| self.failed(&error.to_string())));
-        }
-        if let Some((ranks, rule)) = self.settings.ranks.zip(self.settings.rank_rule.as_deref()) {
-            return self.by_processes(lab, ranks, rule, references.as_ref());
         }
         if self.settings.spec.kernel == DEVICE_NAME
             && let Some(rows) = self.without_device(lab)?
@@ -230,22 +232,35 @@ impl CellJob {
     }
 
     /// The rows of a cell that several processes render; each point starts new processes.
-    fn by_processes(&self, lab: &Lab, ranks: u16, rule: &str, references: Option<&[Image; 2]>) -> Result<Vec<Record>> {
+    fn by_processes(&self, lab: &Lab, ranks: u16) -> Result<Vec<Record>> {
         let row = |point: &PointJob| {
-            let settings = Settings { spp: point.spp, ..self.settings.clone() };
-            let setup = self.setup(lab, point.spp)?;
-            let Some((record, image)) = run_processes(&settings, ranks, rule, self.trace.as_deref())? else {
-                return Ok(self.left_out(point, &setup, &Warning::NoProgram));
-            };
-            self.scene.check(&record.scene_hash)?;
-            point.image.as_ref().map_or(Ok(()), |path| image_io::write(path, &image))?;
-            let errors = match references {
-                Some([first, second]) => Measured::against(&image, first, second)?,
-                None => Measured::default(),
-            };
-            Ok(self.label(point, record.with_errors(errors)))
+            let job = Self { points: vec![point.clone()], ..self.clone() };
+            match run_processes(&job, ranks)? {
+                Some(mut rows) => rows.pop().ok_or_else(|| Error::Check(format!("{ranks} processes gave no row"))),
+                None => Ok(self.left_out(point, &self.setup(lab, point.spp)?, &Warning::NoProgram)),
+            }
         };
         self.points.iter().map(row).collect()
+    }
+
+    /// Renders with the other processes that the launcher started. Rank 0 returns the row of the point, the others none.
+    fn run_as_rank(&self, lab: &Lab) -> Result<Vec<Record>> {
+        let rule = lab.rank_rule("rank-rule", self.settings.rank_rule.as_deref().unwrap_or_default())?;
+        let settings = Settings { ranks: None, rank_rule: None, ..self.settings.clone() };
+        let (alone, mut rows) = (Self { settings, ..self.clone() }, Vec::new());
+        for point in &self.points {
+            let setup = alone.setup(lab, point.spp)?;
+            let cluster = Cluster::begin(None)?;
+            let halves = self.references.as_ref().filter(|_| cluster.is_first());
+            let references = halves.map(|halves| self.read_references(halves)).transpose()?;
+            let Some((outcome, tally)) = cluster.render(&setup, &rule)? else { continue };
+            self.trace.as_ref().map_or(Ok(()), |path| TraceFile::new(&setup, &outcome).write(path))?;
+            let mut row = self.row(point, &setup, &outcome, references.as_ref())?;
+            tally.label(&rule, &mut row);
+            row.merge_s = row.merge_s.map(|merge_s| merge_s + tally.gather_s);
+            rows.push(row);
+        }
+        Ok(rows)
     }
 
     fn row(
@@ -292,20 +307,31 @@ impl CellJob {
     }
 }
 
-/// The child's side: reads a job and prints its rows.
-pub fn child_main(lab: &Lab) -> Result<()> {
-    let mut text = String::new();
-    std::io::stdin().read_line(&mut text).map_err(|e| Error::system("reading", "standard input", e))?;
-    let job: CellJob = serde_json::from_str(&text)
-        .map_err(|e| InputError::new("standard input", "", format!("is not the description of a cell: {e}")))?;
-    let wait_for_the_end = || {
-        // The parent sends nothing more, so this returns when it is gone.
-        let _ = std::io::copy(&mut std::io::stdin(), &mut std::io::sink());
-        process_group::end_own_group();
+/// The child's side: reads a job and prints its rows. A process that a launcher of ranks started reads it from a file.
+pub fn child_main(lab: &Lab, file: Option<&Path>) -> Result<()> {
+    let read = |text: &str, from: &str| -> Result<CellJob> {
+        let problem = |e| format!("is not the description of a cell: {e}");
+        serde_json::from_str(text).map_err(|e| InputError::new(from, "", problem(e)).into())
     };
-    let started = std::thread::Builder::new().spawn(wait_for_the_end);
-    started.map_err(|e| Error::system("starting", "the thread that waits for the parent's end", e))?;
-    let rows = job.run(lab)?;
+    let rows = if let Some(path) = file {
+        let rows = read(&read_text(path)?, &path.display().to_string())?.run_as_rank(lab)?;
+        if rows.is_empty() {
+            return Ok(());
+        }
+        rows
+    } else {
+        let mut text = String::new();
+        std::io::stdin().read_line(&mut text).map_err(|e| Error::system("reading", "standard input", e))?;
+        let job = read(&text, "standard input")?;
+        let wait_for_the_end = || {
+            // The parent sends nothing more, so this returns when it is gone.
+            let _ = std::io::copy(&mut std::io::stdin(), &mut std::io::sink());
+            process_group::end_own_group();
+        };
+        let started = std::thread::Builder::new().spawn(wait_for_the_end);
+        started.map_err(|e| Error::system("starting", "the thread that waits for the parent's end", e))?;
+        job.run(lab)?
+    };
     let answer = serde_json::to_string(&rows).map_err(|e| Error::system("writing", "standard output", e.into()))?;
     writeln!(std::io::stdout(), "{answer}").map_err(|e| Error::system("writing", "standard output", e))
 }

@@ -1,7 +1,7 @@
 //! The keys of an experiment's file, for `pathmark list keys`.
 
 use super::table::REQUIRED;
-use crate::measure::AXES;
+use crate::measure::SETTINGS;
 
 /// Key and meaning of all fields except the axes.
 const KEYS: &[(&str, &str)] = &[
@@ -39,7 +39,7 @@ const KEYS: &[(&str, &str)] = &[
 
 /// Key and meaning of all fields that an experiment's file may have.
 pub fn keys() -> impl Iterator<Item = (String, String)> {
-    let axes = AXES.iter().map(|axis| {
+    let axes = SETTINGS.iter().map(|axis| {
         let about = if axis.about.is_empty() { "values of this axis" } else { axis.about };
         let required = if REQUIRED.contains(&axis.name) { " [required]" } else { "" };
         (format!("matrix.{}", axis.name), format!("{about}{required}"))

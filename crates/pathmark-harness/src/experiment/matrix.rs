@@ -5,7 +5,7 @@ use super::processes::check_processes;
 use super::table::{Matrix, Scale};
 use super::{Cell, Definition, Profile};
 use crate::error::{Error, InputError, Result};
-use crate::measure::{AXES, Axis, Field, ImageKey, LARGEST_SEED, ScheduleKey, Settings, Setup};
+use crate::measure::{ImageKey, Kind, LARGEST_SEED, SETTINGS, ScheduleKey, Setting, Settings, Setup};
 use crate::sampling::{SAMPLERS, is_deterministic};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -73,7 +73,7 @@ impl Definition {
             let product = Product { definition: self, profile, scale: self.scale(profile)?, matrix };
             product.check_axes()?;
             product.check_combinations(&mut combinations)?;
-            product.add(&AXES, &Settings::default(), &mut cells)?;
+            product.add(&SETTINGS, &Settings::default(), &mut cells)?;
         }
         cells.list.extend(self.external_cells(profile)?);
         Ok(cells.list)
@@ -107,22 +107,22 @@ impl<'a> Product<'a> {
 
     /// The values of an axis as they are written. A profile's values replace the matrix's, except the size, where the
     /// matrix's own come first.
-    fn written(&self, axis: &Axis) -> Option<&'a Vec<String>> {
+    fn written(&self, axis: &Setting) -> Option<&'a Vec<String>> {
         let (own, scale) = (self.matrix.values(axis.name), self.scale.values(axis.name));
         if axis.name == "size" { own.or(scale) } else { scale.or(own) }
     }
 
     /// Refuses axes without a value, except the bounce limit, which may have none.
     fn check_axes(&self) -> Result<()> {
-        let is_empty = |axis: &&Axis| self.written(axis).is_some_and(Vec::is_empty) && axis.name != "max-depth";
+        let is_empty = |axis: &&Setting| self.written(axis).is_some_and(Vec::is_empty) && axis.name != "max-depth";
         let problem = "has no values, so there is nothing to run";
-        AXES.iter().find(is_empty).map_or(Ok(()), |axis| {
+        SETTINGS.iter().find(is_empty).map_or(Ok(()), |axis| {
             Err(self.at_field(InputError::new(axis.name, "[]", problem).allowed("at least one value").into()))
         })
     }
 
     /// The values of an axis, one of which may stand for all that there are.
-    fn values(&self, axis: &Axis) -> impl Iterator<Item = String> {
+    fn values(&self, axis: &Setting) -> impl Iterator<Item = String> {
         self.written(axis).into_iter().flatten().flat_map(|value| match axis.all {
             Some(all) if value == "all" => all(&self.definition.lab),
             _ => vec![value.clone()],
@@ -132,9 +132,9 @@ impl<'a> Product<'a> {
     /// Adds the number of combinations to those of earlier matrices, and refuses too many. The axis with the most values
     /// is named.
     fn check_combinations(&self, sum: &mut u64) -> Result<()> {
-        let counts: Vec<u64> = AXES.iter().map(|axis| (self.values(axis).count() as u64).max(1)).collect();
+        let counts: Vec<u64> = SETTINGS.iter().map(|axis| (self.values(axis).count() as u64).max(1)).collect();
         *sum = counts.iter().fold(1_u64, |product, count| product.saturating_mul(*count)).saturating_add(*sum);
-        let longest = AXES.iter().zip(&counts).max_by_key(|(_, count)| **count);
+        let longest = SETTINGS.iter().zip(&counts).max_by_key(|(_, count)| **count);
         let Some((axis, count)) = longest.filter(|_| *sum > LARGEST_CELLS) else { return Ok(()) };
         let problem = format!("the matrices have {sum} combinations of their values, of which each is a cell");
         let error = InputError::new(axis.name, format!("{count} values"), problem);
@@ -142,7 +142,7 @@ impl<'a> Product<'a> {
     }
 
     /// Adds the cells of all combinations of these axes.
-    fn add(&self, axes: &[Axis], settings: &Settings, cells: &mut Cells) -> Result<()> {
+    fn add(&self, axes: &[Setting], settings: &Settings, cells: &mut Cells) -> Result<()> {
         let Some((axis, inner)) = axes.split_first() else { return self.add_cell(settings.clone(), cells) };
         if self.written(axis).is_none_or(Vec::is_empty) {
             let mut settings = settings.clone();
@@ -153,9 +153,8 @@ impl<'a> Product<'a> {
         }
         for value in self.values(axis) {
             let mut settings = settings.clone();
-            match (axis.field)(&mut settings) {
-                Field::Fitting(_) if value == FITTING => {}
-                _ => axis.set(&mut settings, &value)?,
+            if axis.kind != Kind::Fitting || value != FITTING {
+                axis.set(&mut settings, &value)?;
             }
             match axis.name {
                 "scene" => settings.scene = self.definition.scene_path(&value),
@@ -188,7 +187,7 @@ impl<'a> Product<'a> {
                 settings.spp.saturating_mul(u32::try_from(settings.workers(settings.threads)).unwrap_or(u32::MAX));
         }
         let setup = self.definition.lab.prepare(settings).map_err(|error| self.at_field(error))?;
-        check_processes(&self.definition.lab, setup.settings()).map_err(|error| self.at_field(error))?;
+        check_processes(&setup).map_err(|error| self.at_field(error))?;
         if self.matrix.curve {
             setup.check_rounds().map_err(|error| self.at_field(error))?;
         }

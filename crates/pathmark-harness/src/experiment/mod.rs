@@ -33,6 +33,8 @@ mod reference_halves;
 mod run_file;
 mod running;
 mod scene_version;
+#[cfg(test)]
+mod setting_tests;
 mod shuffle;
 mod sides;
 mod stopping_rule;

@@ -11,7 +11,7 @@ use super::Definition;
 use super::definition::REFERENCE_SPP;
 use crate::error::{InputError, Result};
 use crate::input::parse;
-use crate::measure::{AXES, Axis, Field, Settings, parse_size};
+use crate::measure::{Kind, SETTINGS, Setting, parse_size};
 use toml::{Table, Value};
 
 /// The tables of profiles, which may hold a value instead of the matrix.
@@ -38,7 +38,7 @@ impl Definition {
 }
 
 fn set(table: &mut Table, pair: &str) -> Result<()> {
-    let names: Vec<&str> = AXES.iter().map(|axis| axis.name).chain([REFERENCE_SPP]).collect();
+    let names: Vec<&str> = SETTINGS.iter().map(|axis| axis.name).chain([REFERENCE_SPP]).collect();
     let Some((name, values)) = pair.split_once('=') else {
         let problem = "lacks the = between axis and values";
         return Err(InputError::new("set", pair, problem).allowed("AXIS=VALUE,VALUE...").into());
@@ -48,7 +48,7 @@ fn set(table: &mut Table, pair: &str) -> Result<()> {
         profiles(table).for_each(|profile| _ = profile.insert(name.to_string(), spp.clone()));
         return Ok(());
     }
-    let Some(axis) = Axis::named(name) else {
+    let Some(axis) = Setting::named(name) else {
         return Err(InputError::new("set", name, "there is no axis of that name").allowed(names.join(", ")).into());
     };
     let value = value_of(axis, values)?;
@@ -78,20 +78,20 @@ fn matrices(table: &mut Table) -> Vec<&mut Table> {
 }
 
 /// The value in a definition: one size, or a list of words, numbers or switches.
-fn value_of(axis: &Axis, values: &str) -> Result<Value> {
+fn value_of(axis: &Setting, values: &str) -> Result<Value> {
     let each = values.split(',').map(str::trim);
-    Ok(match (axis.field)(&mut Settings::default()) {
-        Field::Size(_) => {
+    Ok(match axis.kind {
+        Kind::Size => {
             let (width, height) = parse_size(values)?;
             Value::Array(vec![Value::Integer(width.into()), Value::Integer(height.into())])
         }
-        Field::Switch(_) => Value::Array(each.map(|value| switch(axis.name, value)).collect::<Result<_>>()?),
-        Field::Name(_) | Field::Fitting(_) => Value::Array(each.map(Value::from).collect()),
-        Field::Workers(_) => {
+        Kind::Switch => Value::Array(each.map(|value| switch(axis.name, value)).collect::<Result<_>>()?),
+        Kind::Name | Kind::Fitting => Value::Array(each.map(Value::from).collect()),
+        Kind::Workers => {
             let workers = |value: &str| if value == "all" { Ok(value.into()) } else { number(axis.name, value) };
             Value::Array(each.map(workers).collect::<Result<_>>()?)
         }
-        Field::Count(_) | Field::Samples(_) | Field::Seed(_) => {
+        Kind::Count | Kind::Samples | Kind::Seed => {
             Value::Array(each.map(|value| number(axis.name, value)).collect::<Result<_>>()?)
         }
     })

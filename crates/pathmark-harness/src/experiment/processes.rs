@@ -1,11 +1,9 @@
 //! Cells whose workers are processes: `mpiexec` starts several processes of this program, and the first prints the row.
 
+use super::CellJob;
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
-use crate::image_io::{self, Image};
-use crate::lab::Lab;
-use crate::measure::{AXES, Record, Settings};
-use serde_json::Value;
+use crate::measure::{Record, Settings, Setup};
 use std::env;
 use std::ffi::OsString;
 use std::io::ErrorKind;
@@ -17,23 +15,16 @@ use std::process::{Command, Stdio};
 const LAUNCHER: &str = "mpiexec";
 const LAUNCHER_VARIABLE: &str = "PATHMARK_MPIEXEC";
 
-/// Renders with `ranks` processes. `Ok(None)` if there is no launcher.
-pub(super) fn run_processes(
-    settings: &Settings,
-    ranks: u16,
-    rule: &str,
-    trace: Option<&Path>,
-) -> Result<Option<(Record, Image)>> {
+/// Runs a cell's job with `ranks` processes. They read it from a file, because a launcher gives its standard input to one
+/// of them. `Ok(None)` if there is no launcher.
+pub(super) fn run_processes(job: &CellJob, ranks: u16) -> Result<Option<Vec<Record>>> {
     let folder = tempfile::tempdir().map_err(|e| Error::system("making", "a temporary folder", e))?;
-    let image = folder.path().join("image.pfm");
-    let mut arguments = options(settings, rule);
-    arguments.extend(["--image".into(), image.clone().into_os_string()]);
-    if let Some(path) = trace {
-        arguments.extend(["--trace".into(), path.as_os_str().to_owned()]);
-    }
-    let Some(printed) = printed_by_ranks(ranks, &arguments)? else { return Ok(None) };
-    let record = record(&printed).ok_or_else(|| Error::Check(format!("{ranks} processes printed no record")))?;
-    Ok(Some((record, image_io::read(&image)?)))
+    let path = folder.path().join("cell.json");
+    let text = serde_json::to_string(job).map_err(|e| Error::system("writing", &path, e.into()))?;
+    std::fs::write(&path, text).map_err(|e| Error::system("writing", &path, e))?;
+    let Some(printed) = printed_by_ranks(ranks, &["cell".into(), path.into_os_string()])? else { return Ok(None) };
+    let rows = serde_json::from_slice(&printed);
+    rows.map(Some).map_err(|e| Error::Check(format!("{ranks} processes printed no rows: {e}")))
 }
 
 /// Runs `ranks` processes of this program; returns their standard output. `Ok(None)` if there is no launcher.
@@ -66,33 +57,10 @@ pub(super) fn write_messages(path: &Path) -> Result<bool> {
     Ok(true)
 }
 
-/// The command-line arguments of a render with these settings.
-fn options(settings: &Settings, rule: &str) -> Vec<OsString> {
-    let mut options = vec!["render".to_string(), settings.scene.clone(), "--quiet".to_string(), "--json".to_string()];
-    let samples_and_seed = ["spp", "seed", "clamp"];
-    for axis in AXES.iter().filter(|axis| !axis.about.is_empty() || samples_and_seed.contains(&axis.name)) {
-        let value = axis.show(settings);
-        if !value.is_empty() {
-            options.extend([format!("--{}", axis.name), value]);
-        }
-    }
-    options.extend(["--ranks".to_string(), rule.to_string()]);
-    options.into_iter().map(OsString::from).collect()
-}
-
-/// The record that the first process printed; its merge time includes the time of gathering.
-fn record(printed: &[u8]) -> Option<Record> {
-    let mut value: Value = serde_json::from_slice(printed).ok()?;
-    let fields = value.as_object_mut()?;
-    fields.remove("by_rank")?;
-    let gather_s = fields.remove("gather_s")?.as_f64()?;
-    let record: Record = serde_json::from_value(value).ok()?;
-    Some(Record { merge_s: record.merge_s.map(|merge_s| merge_s + gather_s), ..record })
-}
-
 /// Refuses settings with which processes cannot start, share jobs or give their output.
-pub(super) fn check_processes(lab: &Lab, settings: &Settings) -> Result<()> {
-    let (ranks, rule) = match (settings.ranks, &settings.rank_rule) {
+pub(super) fn check_processes(setup: &Setup) -> Result<()> {
+    let settings = setup.settings();
+    let (ranks, rule) = match (settings.ranks, setup.rank_rule()) {
         (None, None) => return Ok(()),
         (Some(ranks), Some(rule)) => (ranks, rule),
         (Some(ranks), None) => {
@@ -100,14 +68,15 @@ pub(super) fn check_processes(lab: &Lab, settings: &Settings) -> Result<()> {
             return Err(error.allowed("ranks together with rank-rule").into());
         }
         (None, Some(rule)) => {
-            let error = InputError::new("rank-rule", rule, "shares jobs among processes, but there are none");
+            let problem = "shares jobs among processes, but there are none";
+            let error = InputError::new("rank-rule", rule.to_string(), problem);
             return Err(error.allowed("rank-rule together with ranks").into());
         }
     };
     if ranks == 0 {
         return Err(InputError::new("ranks", "0", "is out of range").allowed("1 or more").into());
     }
-    lab.rank_rule("rank-rule", rule)?.check(ranks.into())?;
+    rule.check(ranks.into())?;
     if settings.output == Settings::default().output {
         return Ok(());
     }

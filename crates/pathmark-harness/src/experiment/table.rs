@@ -3,7 +3,7 @@
 use super::definition::REFERENCE_SPP;
 use super::stopping_rule::{MOST_REPETITIONS, StoppingRule};
 use super::{Profile, Timeout};
-use crate::measure::{AXES, Axis, Field, Settings, available_threads};
+use crate::measure::{Kind, SETTINGS, Setting, available_threads};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{DeserializeSeed, Error as _, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -104,7 +104,7 @@ impl<'de, const PROFILE: bool> Deserialize<'de> for Key<PROFILE> {
         } else {
             &["repetitions", "weak", "curve", "profiles"]
         };
-        let known: Vec<&str> = AXES.iter().map(|axis| axis.name).chain(others.iter().copied()).collect();
+        let known: Vec<&str> = SETTINGS.iter().map(|axis| axis.name).chain(others.iter().copied()).collect();
         if known.contains(&name.as_str()) {
             return Ok(Self(name));
         }
@@ -113,7 +113,7 @@ impl<'de, const PROFILE: bool> Deserialize<'de> for Key<PROFILE> {
 }
 
 /// The values of an axis, read as its field's type.
-struct Values(&'static Axis);
+struct Values(&'static Setting);
 
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "expected a number of threads or \"all\"")]
@@ -145,15 +145,15 @@ impl<'de> DeserializeSeed<'de> for Values {
     type Value = Vec<String>;
 
     fn deserialize<D: Deserializer<'de>>(self, from: D) -> Result<Self::Value, D::Error> {
-        Ok(match (self.0.field)(&mut Settings::default()) {
-            Field::Name(_) | Field::Fitting(_) => Vec::deserialize(from)?,
-            Field::Switch(_) => words(&Vec::<bool>::deserialize(from)?),
-            Field::Count(_) => words(&Vec::<u16>::deserialize(from)?),
-            Field::Samples(_) => words(&Vec::<u32>::deserialize(from)?),
-            Field::Seed(_) => words(&Vec::<u64>::deserialize(from)?),
-            Field::Workers(_) => Vec::<Threads>::deserialize(from)?.iter().map(|own| own.count().to_string()).collect(),
+        Ok(match self.0.kind {
+            Kind::Name | Kind::Fitting => Vec::deserialize(from)?,
+            Kind::Switch => words(&Vec::<bool>::deserialize(from)?),
+            Kind::Count => words(&Vec::<u16>::deserialize(from)?),
+            Kind::Samples => words(&Vec::<u32>::deserialize(from)?),
+            Kind::Seed => words(&Vec::<u64>::deserialize(from)?),
+            Kind::Workers => Vec::<Threads>::deserialize(from)?.iter().map(|own| own.count().to_string()).collect(),
             // All cells have the same size, so it is not a list.
-            Field::Size(_) => <[u32; 2]>::deserialize(from).map(|[width, height]| vec![format!("{width}x{height}")])?,
+            Kind::Size => <[u32; 2]>::deserialize(from).map(|[width, height]| vec![format!("{width}x{height}")])?,
         })
     }
 }
@@ -177,7 +177,7 @@ impl<'de, const PROFILE: bool> Visitor<'de> for TableVisitor<PROFILE> {
         let usual = if PROFILE { Scale::usual() } else { Scale::default() };
         let mut table = Table::<PROFILE> { axes: usual.axes, repetitions: usual.repetitions, ..Table::default() };
         while let Some(Key(name)) = map.next_key::<Key<PROFILE>>()? {
-            match (Axis::named(&name), name.as_str()) {
+            match (Setting::named(&name), name.as_str()) {
                 (Some(axis), _) => _ = table.axes.insert(axis.name, map.next_value_seed(Values(axis))?),
                 (None, "weak") => table.weak = map.next_value()?,
                 (None, "curve") => table.curve = map.next_value()?,

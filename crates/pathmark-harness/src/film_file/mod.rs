@@ -4,6 +4,8 @@ mod sum_file;
 
 use crate::error::Result;
 use crate::film::Film;
+use crate::kernel;
+use crate::settings::{Asked, ImageKey, settings_list};
 use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -11,54 +13,32 @@ pub use sum_file::SumFile;
 
 const FILE: SumFile = SumFile { magic: "pathmark film 1", field: "film" };
 
-/// The identity of a film: two films with the same key hold the same bits.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FilmKey {
-    /// Name of the scene.
-    pub scene: String,
-    /// Hash of the scene's definition.
-    pub scene_hash: String,
-    /// Estimator.
-    pub estimator: String,
-    /// Sampler.
-    pub sampler: String,
-    /// Seed; at least [`crate::sampling::REFERENCE_SEEDS`] for references.
-    pub seed: u64,
-    /// Samples per pixel.
-    pub spp: u32,
-    /// Columns.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// Depth at which paths are cut, if they are.
-    #[serde(default)]
-    pub max_depth: Option<u16>,
-    /// Camera rays per sample, if there are several.
-    #[serde(default)]
-    pub camera_rays: Option<u16>,
-    /// Russian roulette rule, including the estimator's own rule, which films of revision 1 omit.
-    #[serde(default)]
-    pub roulette: Option<String>,
-    /// The clamp, if there is one; older files have no entry.
-    #[serde(default)]
-    pub clamp: Option<String>,
-    /// The pixel filter, if it is not the camera's own.
-    #[serde(default)]
-    pub filter: Option<String>,
-    /// Distance below which no hit counts, if there is one.
-    #[serde(default)]
-    pub epsilon: Option<String>,
-    /// Floating-point format of the paths; older files have only one.
-    #[serde(default = "double")]
-    pub precision: String,
-    /// Whether the number of samples of a tile depends on its noise; `spp` is then the mean.
-    #[serde(default)]
-    pub adaptive: bool,
-    /// Revision of the arithmetic: films of another revision are rendered again.
-    pub revision: u32,
+macro_rules! film_key {
+    ({} image { $(
+        $(#[doc = $about:literal])+ $place:ident $field:ident: $kind:ty $(= $default:expr)?, $setting:expr
+        $(, when $when:meta)? $(, read $read:meta)?;
+    )* } schedule $schedule:tt) => {
+        /// The identity of a film: two films with the same key hold the same bits. Older files lack what `None` says.
+        #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub struct FilmKey {
+            $($(#[doc = $about])+ $(#[$when])? $(#[$read])? pub $field: $kind,)*
+            /// Revision of the arithmetic: films of another revision are rendered again.
+            pub revision: u32,
+        }
+
+        impl FilmKey {
+            /// The key of a film with this image.
+            pub fn of(image: ImageKey) -> Self {
+                Self { $($(#[$when])? $field: Asked::of(image.$field),)* revision: kernel::REVISION }
+            }
+        }
+    };
 }
 
+settings_list!(film_key {});
+
+/// The format of films that were written before there was a choice.
 fn double() -> String {
     Precision::F64.name().to_string()
 }

@@ -9,22 +9,15 @@ pub struct Column {
     pub about: &'static str,
     /// The type of its values in this program.
     pub(super) kind: &'static str,
+    /// The first version of the columns (column `schema`) that has it.
+    pub since: u32,
 }
 
-/// The first version of the columns that had each; all others are as old as the file.
-const SINCE: &[(u32, &[&str])] = &[
-    (2, &["output", "pilot_s", "gap_sum_s", "tail_sum_s", "foreign_cpu_s"]),
-    (3, &["accelerator", "max_depth", "build_s", "box_tests", "primitive_tests"]),
-    (4, &["adaptive", "target_error", "time_limit_s", "rounds", "estimated_rmse", "variance", "roulette", "clamp"]),
-    (5, &["kernel_fallback", "simd"]),
-    (6, &["filter", "epsilon", "object_mse", "within_tolerance", "fireflies", "black_pixels", "image_write_s"]),
-    (7, &["ranks", "rank_rule", "mpi"]),
-    (8, &["device_compile_s", "device_copy_s"]),
-    (9, &["camera_rays"]),
-    (10, &["steal_s"]),
-];
-
 impl Column {
+    pub(super) const fn new(name: &'static str, about: &'static str, kind: &'static str, since: u32) -> Self {
+        Self { name, about, kind, since }
+    }
+
     /// The kind of its values, in words.
     pub fn values(&self) -> &'static str {
         let kind = self.kind;
@@ -49,29 +42,55 @@ impl Column {
         let units = [("_s", "seconds"), ("_bytes", "bytes")];
         units.iter().find(|(ending, _)| self.name.ends_with(ending)).map(|(_, unit)| *unit)
     }
-
-    /// The first version of the columns (column `schema`) that has it.
-    pub fn since(&self) -> u32 {
-        SINCE.iter().find(|(_, names)| names.contains(&self.name)).map_or(1, |(version, _)| *version)
-    }
 }
 
-/// A struct with public fields, and the list of its fields as columns.
+/// A struct with the columns of the settings between its own public fields, and the list of its fields as columns.
 macro_rules! columns {
-    (
+    (since) => { 1 };
+    (since $since:literal) => { $since };
+    ({
         $(#[$meta:meta])*
-        pub struct $name:ident {
-            $($(#[doc = $about:literal])+ pub $field:ident: $kind:ty,)*
-        }
-    ) => {
+        pub struct $name:ident { $($(#[doc = $f_about:literal])+ pub $f:ident: $f_kind:ty,)* }
+        settings { $($(#[doc = $l_about:literal])+ $(#[since($l_since:literal)])? pub $l:ident: $l_kind:ty,)* }
+    } image { $(
+        $(#[doc = $i_about:literal])+ $i_place:ident $i:ident: $i_kind:ty $(= $i_default:expr)?, $i_setting:expr
+        $(, when $i_when:meta)? $(, read $i_read:meta)?;
+    )* } schedule { $(
+        $(#[doc = $s_about:literal])+ $s_place:ident $s:ident: $s_kind:ty $(= $s_default:expr)?, $s_setting:expr
+        $(, when $s_when:meta)? $(, read $s_read:meta)?;
+    )* }) => {
         $(#[$meta])*
         pub struct $name {
-            $($(#[doc = $about])+ pub $field: $kind,)*
+            $($(#[doc = $f_about])+ pub $f: $f_kind,)*
+            $($(#[doc = $i_about])+ $(#[$i_when])? pub $i: <$i_kind as Asked>::Column,)*
+            $($(#[doc = $s_about])+ $(#[$s_when])? pub $s: <$s_kind as Asked>::Column,)*
+            $($(#[doc = $l_about])+ pub $l: $l_kind,)*
+        }
+
+        impl $name {
+            fn of_keys(image: ImageKey, schedule: ScheduleKey) -> Self {
+                Self { $($(#[$i_when])? $i: image.$i,)* $($(#[$s_when])? $s: schedule.$s,)* ..Self::default() }
+            }
+
+            /// The identity of its image.
+            pub fn image_key(&self) -> ImageKey {
+                ImageKey { $($(#[$i_when])? $i: self.$i.clone(),)* }
+            }
+
+            /// The identity of its schedule among those of the same image.
+            pub fn schedule_key(&self) -> ScheduleKey {
+                ScheduleKey { $($(#[$s_when])? $s: self.$s.clone(),)* }
+            }
         }
 
         /// The columns of a row, in their order.
-        pub const COLUMNS: &[$crate::measure::Column] = &[
-            $($crate::measure::Column { name: stringify!($field), about: concat!($($about),+), kind: stringify!($kind) }),*
+        pub const COLUMNS: &[Column] = &[
+            $(Column::new(stringify!($f), concat!($($f_about),+), stringify!($f_kind), 1),)*
+            $($(#[$i_when])?
+            Column::new(stringify!($i), concat!($($i_about),+), <$i_kind as Asked>::COLUMN, $i_setting.since),)*
+            $($(#[$s_when])?
+            Column::new(stringify!($s), concat!($($s_about),+), <$s_kind as Asked>::COLUMN, $s_setting.since),)*
+            $(Column::new(stringify!($l), concat!($($l_about),+), stringify!($l_kind), columns!(since $($l_since)?)),)*
         ];
     };
 }
@@ -79,7 +98,6 @@ pub(super) use columns;
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::measure::{COLUMNS, Record, SCHEMA};
 
     /// The headings of a real file, from the CSV writer.
@@ -99,13 +117,7 @@ mod tests {
     #[test]
     fn every_column_is_explained() {
         for column in COLUMNS {
-            assert!(column.about.len() > 4, "{column:?}");
-        }
-        for (version, names) in SINCE {
-            assert!(*version <= SCHEMA);
-            for name in *names {
-                assert!(COLUMNS.iter().any(|column| column.name == *name), "{name} is no column");
-            }
+            assert!(column.about.len() > 4 && column.since <= SCHEMA, "{column:?}");
         }
     }
 
@@ -119,6 +131,6 @@ mod tests {
         );
         assert_eq!((column("scene").values(), column("dirty").values()), ("text", "true or false"));
         assert!(column("mse").may_be_empty() && !column("seed").may_be_empty());
-        assert_eq!((column("simd").since(), column("scene").since()), (5, 1));
+        assert_eq!((column("simd").since, column("scene").since), (5, 1));
     }
 }

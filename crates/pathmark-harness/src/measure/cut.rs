@@ -1,9 +1,9 @@
 //! The jobs of a run: refused before any is made if memory or threads do not suffice for so many.
 
 use super::Setup;
-use super::settings::{LARGEST_BYTES, LARGEST_THREADS};
 use crate::error::{InputError, Result};
 use crate::film::{Decomposition, PixelSum, Plan, PlanSize};
+use crate::settings::{LARGEST_BYTES, LARGEST_THREADS};
 use crate::strategy::{Entry, Workers};
 use std::ops::Range;
 

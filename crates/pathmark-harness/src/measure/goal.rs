@@ -12,11 +12,11 @@
 //! time limit or a checkpoint may divide the samples into steps.
 
 use super::run::RoundTimes;
-use super::settings::LARGEST_SPP;
 use super::{Rounds, Warning};
 use crate::analysis::z_test::normal_quantile;
 use crate::error::{InputError, Result};
 use crate::film::{FEWEST_PIXELS, SAMPLE_BLOCK};
+use crate::settings::LARGEST_SPP;
 
 /// Confidence with which the RMSE of a render must be below its target.
 pub const CONFIDENCE: f64 = 0.95;

@@ -5,7 +5,6 @@
 //! samples to an existing film. [`calibrate`] times strategies on empty jobs, for the simulator.
 
 mod adaptive;
-mod axes;
 mod beside;
 mod calibration;
 mod checkpoint;
@@ -32,7 +31,6 @@ mod provenance;
 mod record;
 mod rounds;
 mod run;
-mod settings;
 mod setup;
 mod share;
 mod stamp;
@@ -42,7 +40,10 @@ mod usage;
 mod warning;
 
 pub use crate::lab::{SERIAL, THREAD_PER_ROW};
-pub use axes::{AXES, Axis, Field, parse_size};
+pub use crate::settings::{
+    ImageKey, Kind, LARGEST_BYTES, LARGEST_SEED, LARGEST_SPP, SETTINGS, ScheduleKey, Setting, Settings,
+    available_threads, image_columns, parse_size, schedule_columns, schedule_name,
+};
 pub use calibration::{CalibrationRow, calibrate};
 pub use checkpoint::{Checkpoint, Saved};
 pub use chrome_trace::chrome_trace;
@@ -53,7 +54,6 @@ pub use external::{ExternalRun, missing_external, run_external};
 pub use foreign_load::{ForeignLoad, ForeignShares};
 pub use goal::{Between, CONFIDENCE, Extend, Goal, Position};
 pub use history::History;
-pub use identity::{ImageKey, ScheduleKey, image_columns, schedule_columns};
 pub use interleaved::{Interleaved, interleaved};
 pub use invalid::InvalidSample;
 pub use left_out::LeftOut;
@@ -64,7 +64,6 @@ pub use provenance::Provenance;
 pub use record::{COLUMNS, Measured, Record, SCHEMA, failure};
 pub use rounds::Rounds;
 pub use run::{Outcome, RoundTimes, Watch};
-pub use settings::{LARGEST_BYTES, LARGEST_SEED, LARGEST_SPP, Settings, available_threads, schedule_name};
 pub use setup::Setup;
 pub use share::{DoneJob, MergedShare, Share};
 pub use stamp::Stamp;

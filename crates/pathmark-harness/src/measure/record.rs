@@ -2,21 +2,20 @@
 
 use super::column::columns;
 use super::stamp::Stamp;
-use super::{Outcome, Settings, Setup, Warning, utc_now};
+use super::{Column, ImageKey, Outcome, ScheduleKey, Setting, Settings, Setup, Warning, utc_now};
 use crate::analysis::quantile::median;
 use crate::error::Result;
 use crate::image_io::Image;
-use crate::kernel::RenderOptions;
-use crate::kernel::workload::WORKLOAD;
 use crate::metric;
-use crate::scene::{Filter, Scene};
+use crate::scene::Scene;
+use crate::settings::{Asked, settings_list};
 use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 
 /// Version of the columns.
 pub const SCHEMA: u32 = 10;
 
-columns! {
+settings_list!(columns {
     /// A row. A run that failed is a row too: `error` says why, and columns without a measurement are empty.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
     #[serde(deny_unknown_fields)]
@@ -27,69 +26,22 @@ columns! {
         pub experiment: String,
         /// The cell's settings in one word; with `repetition`, unique within an experiment.
         pub cell: String,
-        /// Name of the scene or workload.
-        pub scene: String,
-        /// Hash of the scene's definition.
-        pub scene_hash: String,
-        /// Effect profile of the kernel.
-        pub effects: String,
-        /// Width of the image in pixels.
-        pub width: u32,
-        /// Height of the image in pixels.
-        pub height: u32,
-        /// Samples per pixel.
-        pub spp: u32,
-        /// Seed of the sampler.
-        pub seed: u64,
-        /// Name of the estimator.
-        pub estimator: String,
-        /// Name of the sampler.
-        pub sampler: String,
-        /// Name of the kernel that rendered, such as `scalar` or `lanes`.
-        pub kernel: String,
-        /// Why the requested kernel could not render; empty if it did.
-        pub kernel_fallback: String,
-        /// Floating-point format of the kernel that rendered: `f64` or `f32`.
-        pub precision: String,
-        /// Instruction set of the lanes; empty for kernels without lanes.
-        pub simd: String,
-        /// Acceleration structure: `none`, `median` or `sah`.
-        pub accelerator: String,
-        /// Bounces after which paths were cut; empty if there was no limit.
-        pub max_depth: Option<u16>,
-        /// Camera rays per sample; empty for one.
-        pub camera_rays: Option<u16>,
-        /// Russian roulette rule; empty if there was none.
-        pub roulette: String,
-        /// Whether the noise of each tile determined its number of samples; `spp` is then their mean.
-        pub adaptive: bool,
+    }
+    settings
+    {
         /// RMSE at which the render was to stop; empty if there was no such goal.
+        #[since(4)]
         pub target_error: Option<f64>,
         /// Seconds of rendering after which the render was to stop.
+        #[since(4)]
         pub time_limit_s: Option<f64>,
         /// Rounds in which jobs were handed out.
+        #[since(4)]
         pub rounds: Option<u32>,
-        /// Clamp: `subpixel` or `recursion`, followed by a colon and its limit if that is not 1; empty if there was none.
-        pub clamp: String,
-        /// Pixel filter; empty if it was the camera's own.
-        pub filter: String,
-        /// Distance below which hits were dropped; empty if there was none.
-        pub epsilon: String,
         /// Whether an option changed what the image converges to.
         pub biased: bool,
-        /// Decomposition: how the film was cut into pieces.
-        pub decomposition: String,
-        /// Name of the scheduling strategy; with several processes, the strategy within each.
-        pub strategy: String,
-        /// Output: how workers delivered pieces to the film.
-        pub output: String,
-        /// Requested threads; with several processes, in each.
-        pub threads: usize,
-        /// Number of processes connected by MPI; empty if there was one process.
-        pub ranks: Option<u16>,
-        /// Rule by which the processes shared the jobs; empty if there was one process.
-        pub rank_rule: String,
         /// MPI library, with its version; empty if there was one process.
+        #[since(7)]
         pub mpi: String,
         /// Number of the repetition, from 0.
         pub repetition: u32,
@@ -100,12 +52,16 @@ columns! {
         /// Workers that did at least one job; empty, like all measurements, if the run failed.
         pub workers_used: Option<u32>,
         /// Seconds to build the kernel and the scene's acceleration structure.
+        #[since(3)]
         pub build_s: Option<f64>,
         /// Seconds of `build_s` to compile programs for devices; empty without devices.
+        #[since(8)]
         pub device_compile_s: Option<f64>,
         /// Seconds of `build_s` to copy the scene to devices; empty without devices.
+        #[since(8)]
         pub device_copy_s: Option<f64>,
         /// Seconds of the pilot that estimates the cost of the pieces, where the strategy needs it.
+        #[since(2)]
         pub pilot_s: Option<f64>,
         /// Seconds to create the strategy, including its thread pool if it keeps one.
         pub setup_s: Option<f64>,
@@ -122,8 +78,10 @@ columns! {
         /// Seconds inside jobs of the busiest worker.
         pub busy_max_s: Option<f64>,
         /// Seconds that workers spent before their first job and between jobs, over all workers.
+        #[since(2)]
         pub gap_sum_s: Option<f64>,
         /// Seconds from each worker's last job to the end of the run, over all workers. Busy time, gaps and tails add up to workers x makespan.
+        #[since(2)]
         pub tail_sum_s: Option<f64>,
         /// Seconds of the shortest job.
         pub job_min_s: Option<f64>,
@@ -137,9 +95,11 @@ columns! {
         pub involuntary_switches: Option<i64>,
         /// CPU seconds of other programs on the machine during the makespan; up to schema 9 with `steal_s`. Empty where the
         /// system does not report it.
+        #[since(2)]
         pub foreign_cpu_s: Option<f64>,
         /// CPU seconds that a virtual machine's host gave to others during the makespan. Empty where the system does not
         /// report it.
+        #[since(10)]
         pub steal_s: Option<f64>,
         /// Peak resident memory of the process until the last job returned, without merging and writing of images.
         pub peak_rss_bytes: Option<i64>,
@@ -148,8 +108,10 @@ columns! {
         /// Rays that were traced.
         pub rays: Option<u64>,
         /// Tests of a ray against a box of the acceleration structure.
+        #[since(3)]
         pub box_tests: Option<u64>,
         /// Tests of a ray against a primitive.
+        #[since(3)]
         pub primitive_tests: Option<u64>,
         /// Rays of paths that left the scene.
         pub escaped: Option<u64>,
@@ -158,6 +120,7 @@ columns! {
         /// Samples that were NaN, infinite or negative.
         pub invalid_samples: Option<u64>,
         /// RMSE in linear radiance, estimated from the samples' own variance; too large where samples are stratified.
+        #[since(4)]
         pub estimated_rmse: Option<f64>,
         /// Mean squared error in linear radiance, cross form: free of the reference's noise, so it can be negative.
         pub mse: Option<f64>,
@@ -171,18 +134,24 @@ columns! {
         pub rel_mse: Option<f64>,
         /// Mean over pixels of the variance of a pixel's mean, estimated from the samples as if they were independent. Where
         /// subpixels or a sampler spread the samples evenly, the true error is smaller.
+        #[since(4)]
         pub variance: Option<f64>,
         /// Mean squared error, cross form, over the pixels of the object that the experiment names; NaN if the object fills no pixel.
+        #[since(6)]
         pub object_mse: Option<f64>,
         /// Share of pixels whose display value is within 0.05 of the reference's in every channel.
+        #[since(6)]
         pub within_tolerance: Option<f64>,
         /// Pixels that are brighter than the reference by more than 1, the display's white, in any channel.
+        #[since(6)]
         pub fireflies: Option<u64>,
         /// Mean radiance over pixels and channels.
         pub mean_radiance: Option<f64>,
         /// Pixels in which every channel is 0.
+        #[since(6)]
         pub black_pixels: Option<u64>,
         /// Seconds to write the image; empty if it was not kept.
+        #[since(6)]
         pub image_write_s: Option<f64>,
         /// Checksum of the film; empty if the sampler draws different random numbers in each run.
         pub checksum: String,
@@ -197,7 +166,7 @@ columns! {
         /// When the run started, in UTC; empty if the system's clock shows no date from 1970 to 9999.
         pub started_utc: String,
     }
-}
+});
 
 /// See [`Record::within_tolerance`].
 const TOLERANCE: f64 = 0.05;
@@ -233,54 +202,32 @@ impl Measured {
     }
 }
 
-fn described(settings: &Settings) -> Record {
-    let spec = &settings.spec;
+/// The row of an image and a schedule, without measurements.
+fn described(image: ImageKey, schedule: ScheduleKey) -> Record {
     Record {
         schema: SCHEMA,
         experiment: "render".to_string(),
-        scene: settings.scene.clone(),
-        width: spec.width,
-        height: spec.height,
-        spp: settings.spp,
-        adaptive: settings.adaptive,
-        seed: spec.seed,
-        estimator: spec.estimator.clone(),
-        sampler: spec.sampler.clone(),
-        kernel: spec.kernel.clone(),
-        precision: spec.precision.clone(),
-        max_depth: spec.max_depth,
-        camera_rays: spec.camera_rays,
-        roulette: spec.roulette.clone().unwrap_or_default(),
-        clamp: spec.clamp.clone().unwrap_or_default(),
-        filter: spec.filter.clone().unwrap_or_default(),
-        epsilon: spec.epsilon.clone().unwrap_or_default(),
-        biased: spec.clamp.is_some() || spec.max_depth.is_some() || spec.filter.is_some() || spec.epsilon.is_some(),
-        decomposition: settings.decomposition.clone(),
-        strategy: settings.strategy.clone(),
-        output: settings.output.clone(),
-        threads: settings.threads,
-        ranks: settings.ranks,
-        rank_rule: settings.rank_rule.clone().unwrap_or_default(),
+        biased: image.is_biased(),
         commit: Stamp::of_program().commit.to_string(),
         dirty: Stamp::of_program().is_dirty,
         started_utc: utc_now(),
-        ..Record::default()
+        ..Record::of_keys(image, schedule)
     }
 }
 
-/// A distance as text; small ones by their power of ten.
-fn distance(value: f64) -> String {
-    if value > 0.0 && value < 1e-3 { format!("{value:e}") } else { value.to_string() }
+/// The row of what was asked for.
+fn asked(settings: &Settings) -> Record {
+    described(ImageKey::of(settings), ScheduleKey::of(settings))
 }
 
 /// The row of a failed run.
 pub fn failure(settings: &Settings, error: &str) -> Record {
-    Record { error: error.replace('\n', "; "), ..described(settings) }
+    Record { error: error.replace('\n', "; "), ..asked(settings) }
 }
 
 /// The row of another program, with its errors.
 pub(super) fn external_row(settings: &Settings, scene: &Scene, errors: Measured) -> Record {
-    Record { scene: scene.name.clone(), scene_hash: scene.hash.clone(), ..described(settings).with_errors(errors) }
+    Record { scene: scene.name.clone(), scene_hash: scene.hash.clone(), ..asked(settings).with_errors(errors) }
 }
 
 impl Record {
@@ -326,26 +273,8 @@ impl Record {
 
     /// The row of a setup before it runs, with the values that it really uses, not the requested ones.
     pub fn of(setup: &Setup) -> Self {
-        let described = described(setup.settings());
-        let mut record = Self { scene: setup.name().to_string(), scene_hash: setup.hash(), ..described };
-        let choice = setup.scene().map(|(_, choice)| choice);
-        record.max_depth = choice.and_then(RenderOptions::depth);
-        record.camera_rays = choice.map(RenderOptions::camera_rays).filter(|rays| *rays > 1);
-        record.roulette = choice.and_then(RenderOptions::roulette).map(|rule| rule.to_string()).unwrap_or_default();
-        record.precision = choice.map_or(Precision::F64, RenderOptions::precision).name().to_string();
-        record.kernel = choice.map_or(WORKLOAD, RenderOptions::kernel).to_string();
-        if let Some(choice) = choice {
-            record.estimator = choice.estimator().name.to_string();
-            record.biased = choice.is_biased();
-            record.clamp = choice.clamp().map(|clamp| clamp.to_string()).unwrap_or_default();
-            record.filter = choice.filter().map(Filter::name).unwrap_or_default().to_string();
-            record.epsilon = choice.epsilon().map(distance).unwrap_or_default();
-            record.kernel_fallback = choice.fallback().to_string();
-            record.simd = choice.simd().to_string();
-            record.effects = choice.effects().to_string();
-            record.accelerator = choice.accelerator().to_string();
-        }
-        record
+        let threads = setup.settings().threads;
+        Self { threads, ..described(setup.image_key(), setup.schedule_key()) }
     }
 
     /// The row of a finished run.

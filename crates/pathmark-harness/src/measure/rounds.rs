@@ -5,11 +5,11 @@
 //! [`crate::film::SAMPLE_BLOCK`] samples, but the next round then renders the samples of that block again.
 
 use super::run::{RoundTimes, RunTotals, Watch};
-use super::settings::check_spp;
 use super::{History, MergedShare, Outcome, Setup};
 use crate::error::{InputError, Result};
 use crate::film::{Film, GrowingFilm, Shard};
 use crate::film_file::FilmKey;
+use crate::settings::check_spp;
 use std::ops::Range;
 
 /// A render that can continue.

@@ -2,7 +2,6 @@
 
 use super::cut::cut;
 use super::output::{self, Delivery, OUTPUTS, Output};
-use super::settings::check_spp;
 use super::{Settings, Warning, available_threads, pilot};
 use crate::digest;
 use crate::error::{Error, InputError, Result};
@@ -10,8 +9,9 @@ use crate::estimator::Estimator;
 use crate::film::{Decomposition, Plan};
 use crate::kernel::workload::Entry as Workload;
 use crate::kernel::{self, Clamped, Counts, CustomEstimator, Kernel, RenderOptions, Spec, Tables};
-use crate::lab::{Lab, THREAD_PER_ROW};
+use crate::lab::{Lab, RankRule, THREAD_PER_ROW};
 use crate::scene::{SUBPIXELS, Scene};
+use crate::settings::check_spp;
 use crate::strategy::{self, Config, Strategy, StrategyError, Workers};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -31,6 +31,7 @@ pub struct Setup {
     output: &'static output::Entry,
     strategy: strategy::Entry,
     parameter: Option<String>,
+    rank_rule: Option<RankRule>,
 }
 
 /// The subject of a run.
@@ -92,9 +93,7 @@ impl Setup {
         let settings = settings.resolved();
         settings.check()?;
         check_spp(settings.spp, &settings.spec.estimator, subject.spp_multiple())?;
-        if let Some(rule) = &settings.rank_rule {
-            lab.rank_rule("rank-rule", rule)?;
-        }
+        let rank_rule = settings.rank_rule.as_deref().map(|rule| lab.rank_rule("rank-rule", rule)).transpose()?;
         let decomposition = Decomposition::parse(&settings.decomposition)?;
         let (strategy, parameter) = lab.strategy_named(&settings.strategy).map_err(|error| match error {
             // Report A's name for a strategy together with its pieces is allowed too.
@@ -119,8 +118,17 @@ impl Setup {
         }
         let size = [settings.spec.width, settings.spec.height];
         let plan = cut(&decomposition, &strategy, size, from_ref(&(0..settings.spp)))?;
-        let setup =
-            Self { subject, built: OnceLock::new(), decomposition, plan, output, strategy, parameter, settings };
+        let setup = Self {
+            subject,
+            built: OnceLock::new(),
+            decomposition,
+            plan,
+            output,
+            strategy,
+            parameter,
+            rank_rule,
+            settings,
+        };
         setup.check_adaptive()?;
         Ok(setup)
     }
@@ -144,6 +152,7 @@ impl Setup {
             output: self.output,
             strategy: self.strategy,
             parameter: self.parameter.clone(),
+            rank_rule: self.rank_rule.clone(),
         })
     }
 
@@ -280,6 +289,11 @@ impl Setup {
         &self.strategy
     }
 
+    /// The rule by which processes share the jobs.
+    pub fn rank_rule(&self) -> Option<&RankRule> {
+        self.rank_rule.as_ref()
+    }
+
     /// The pieces of all requested samples.
     pub(super) fn plan(&self) -> Plan {
         self.plan.clone()
@@ -305,9 +319,11 @@ impl Setup {
     }
 
     pub(super) fn new_strategy(&self) -> Result<Box<dyn Strategy>> {
-        if let Some(rule) = &self.settings.rank_rule {
+        if let Some(rule) = &self.rank_rule {
             let problem = "shares jobs among processes, but there is only one";
-            return Err(InputError::new("rank-rule", rule, problem).allowed("an experiment, or render --ranks").into());
+            return Err(InputError::new("rank-rule", rule.to_string(), problem)
+                .allowed("an experiment, or render --ranks")
+                .into());
         }
         let threads = NonZeroUsize::new(self.settings.threads).unwrap_or(NonZeroUsize::MIN);
         let config = Config { parameter: self.parameter.clone(), ..Config::new(threads) };

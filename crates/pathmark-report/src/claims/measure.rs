@@ -134,8 +134,8 @@ impl Evidence {
         let named: BTreeSet<&str> = own.columns().chain(over.columns()).collect();
         let followers = FOLLOWERS.iter().filter(|(column, _)| named.contains(column)).flat_map(|(_, others)| *others);
         let free: BTreeSet<&str> = named.iter().copied().chain(followers.copied()).collect();
-        let identity: Vec<String> =
-            image_columns().into_iter().chain(schedule_columns()).filter(|column| !free.contains(&**column)).collect();
+        let identity: Vec<&str> =
+            image_columns().chain(schedule_columns()).filter(|column| !free.contains(column)).collect();
         let key = |row: &Row, columns: &Columns| {
             (identity.iter().map(|column| text(columns, column)).collect::<Vec<String>>(), row.repetition)
         };

@@ -2,7 +2,7 @@
 
 use crate::digest;
 use crate::experiment::{Definition, Profile};
-use crate::measure::Axis;
+use crate::measure::Setting;
 use crate::results::Results;
 use crate::rows::Row;
 use crate::schedule::strategy;
@@ -68,7 +68,7 @@ fn filters(results: &Results, definition: &Definition, profile: Profile) -> Opti
     for row in results.rows() {
         let Some(cell) = by_id.get(row.cell.as_str()) else { continue };
         for (axis, name) in shown(row) {
-            let asked = Axis::named(axis).map(|axis| cell.shown(axis)).unwrap_or_default();
+            let asked = Setting::named(axis).map(|axis| cell.shown(axis)).unwrap_or_default();
             found.entry(name).or_default().insert((axis, asked));
         }
     }

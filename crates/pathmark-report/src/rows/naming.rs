@@ -7,17 +7,22 @@ use std::hash::Hash;
 pub(crate) type Part<T> = fn(&T) -> String;
 
 /// Returns the parts that distinguish items which are equal in `told` and in all earlier parts. `told` is in every name
-/// anyway.
-pub(crate) fn needed<T, K: Hash + Eq>(things: &[&T], told: impl Fn(&T) -> K, parts: &[Part<T>]) -> Vec<Part<T>> {
+/// anyway. `word` is the word of a part.
+pub(crate) fn needed<T, K: Hash + Eq, P: Copy>(
+    things: &[&T],
+    told: impl Fn(&T) -> K,
+    parts: impl IntoIterator<Item = P>,
+    word: impl Fn(P, &T) -> String,
+) -> Vec<P> {
     let mut groups = numbered(things.iter().map(|thing| told(thing)));
     let mut count = distinct(&groups);
     let mut needed = Vec::new();
     for part in parts {
-        let finer = numbered(things.iter().zip(&groups).map(|(thing, group)| (*group, part(thing))));
+        let finer = numbered(things.iter().zip(&groups).map(|(thing, group)| (*group, word(part, thing))));
         let finer_count = distinct(&finer);
         if finer_count > count {
             (groups, count) = (finer, finer_count);
-            needed.push(*part);
+            needed.push(part);
         }
     }
     needed
@@ -50,7 +55,12 @@ mod tests {
     fn a_part_is_needed_where_it_alone_tells_rows_apart() {
         let parts: [Part<[&'static str; 3]>; 2] = [|thing| thing[1].to_string(), |thing| thing[2].to_string()];
         let needed_of = |things: &[[&'static str; 3]]| {
-            let found = needed(&things.iter().collect::<Vec<_>>(), |thing| thing[0].to_string(), &parts);
+            let found = needed(
+                &things.iter().collect::<Vec<_>>(),
+                |thing| thing[0].to_string(),
+                parts,
+                |part, thing| part(thing),
+            );
             joined(found.iter().map(|part| part(&things[0])))
         };
         assert_eq!(needed_of(&[["a", "x", "1"], ["b", "y", "2"]]), "");

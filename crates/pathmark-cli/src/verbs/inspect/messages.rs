@@ -3,7 +3,6 @@
 use crate::cluster::{Cluster, MessageCost, MessageCosts};
 use crate::console::output::{print, print_json};
 use crate::error::Result;
-use crate::verbs::ranks::library;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -19,7 +18,7 @@ pub(crate) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
-    let cluster = Cluster::begin(library(arguments.mpi.as_ref()).as_deref())?;
+    let cluster = Cluster::begin(arguments.mpi.as_deref())?;
     let Some(told) = cluster.message_costs()? else { return Ok(()) };
     if arguments.json {
         return print_json(&told);

@@ -5,7 +5,7 @@ use crate::error::{Error, InputError, Result};
 use crate::kernel::{self, Event, Inspector, PathLog, RenderOptions, Spec};
 use crate::lab::Lab;
 use crate::math::{Rgb, Vec3};
-use crate::measure::{AXES, InvalidSample, LARGEST_SPP, Settings};
+use crate::measure::{InvalidSample, LARGEST_SPP, SETTINGS, Setting, Settings};
 use crate::plot::number;
 use crate::scene::Scene;
 use crate::shell;
@@ -86,10 +86,15 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     ))
 }
 
+/// Whether the setting is an option of this verb that changes the sample.
+fn is_of_sample(setting: &Setting) -> bool {
+    setting.changes_image && (!setting.about.is_empty() || setting.name == "seed")
+}
+
 /// The command that replays a sample of an image, with every option that changes the sample.
 pub(in crate::verbs) fn command(scene: &str, settings: &Settings, at: InvalidSample) -> String {
-    let axes = AXES.iter().filter(|axis| axis.changes_image && (!axis.about.is_empty() || axis.name == "seed"));
-    let values = axes.map(|axis| (axis.name, axis.show(settings))).filter(|(_, value)| !value.is_empty());
+    let told = SETTINGS.iter().filter(|setting| is_of_sample(setting));
+    let values = told.map(|setting| (setting.name, setting.show(settings))).filter(|(_, value)| !value.is_empty());
     let options = values.flat_map(|(name, value)| [format!("--{name}"), value]);
     let place = ["--pixel".to_string(), format!("{},{}", at.x, at.y), "--sample".to_string(), at.sample.to_string()];
     shell::command(
@@ -230,6 +235,7 @@ fn table(lines: &[Line]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::Kind;
     use clap::Parser;
 
     #[derive(Parser)]
@@ -244,50 +250,27 @@ mod tests {
         Path::try_parse_from(words.split(' ')).expect("a command that the program takes").arguments
     }
 
-    /// Changes each axis that changes the image.
+    /// Changes each setting that changes a sample. Names need not exist: nothing looks them up.
     #[test]
-    fn a_told_command_is_of_the_same_sample_on_every_axis() {
-        let base = || Spec { width: 8, height: 6, estimator: "bsdf".into(), ..Spec::default() };
-        // A new axis must be added to the list below, unless it changes no sample, like the last four here. `inspect path` shows
-        // samples before any clamp.
-        let Spec {
-            width: _,
-            height: _,
-            seed: _,
-            estimator: _,
-            sampler: _,
-            precision: _,
-            max_depth: _,
-            camera_rays: _,
-            roulette: _,
-            filter: _,
-            epsilon: _,
-            clamp: _,
-            kernel: _,
-            simd: _,
-            effects: _,
-            accelerator: _,
-        } = base();
-        let others = [
-            Spec { width: 9, ..base() },
-            Spec { height: 7, ..base() },
-            Spec { seed: 2, ..base() },
-            Spec { estimator: "mis".into(), ..base() },
-            Spec { sampler: "sobol".into(), ..base() },
-            Spec { precision: "f32".into(), ..base() },
-            Spec { max_depth: Some(3), ..base() },
-            Spec { camera_rays: Some(4), ..base() },
-            Spec { roulette: Some("never".into()), ..base() },
-            Spec { filter: Some("center".into()), ..base() },
-            Spec { epsilon: Some("0.001".into()), ..base() },
-        ];
-        for spec in others {
-            assert_ne!(spec, base());
-            let settings = Settings { spec: spec.clone(), ..Settings::default() };
+    fn a_told_command_is_of_the_same_sample_with_every_setting() {
+        let of = |told: Arguments| told.what.settings(&Lab::new(), &told.scene, 4, told.seed).unwrap();
+        let base = || of(read("pathmark inspect path cornell --pixel 0,0"));
+        let (told, left): (Vec<&Setting>, Vec<&Setting>) =
+            SETTINGS.iter().filter(|setting| setting.changes_image).partition(|setting| is_of_sample(setting));
+        let left: Vec<&str> = left.into_iter().map(|setting| setting.name).collect();
+        assert_eq!(left, ["scene", "spp", "adaptive", "clamp"]);
+        for setting in told {
+            let mut settings = base();
+            let value = match setting.kind {
+                Kind::Size => "9x7",
+                Kind::Name | Kind::Fitting => "other",
+                _ => "3",
+            };
+            setting.set(&mut settings, value).unwrap();
+            assert_ne!(settings, base(), "{}", setting.name);
             let told = read(&command("cornell", &settings, InvalidSample { y: 5, x: 7, sample: 3 }));
-            let Arguments { scene, pixel, sample, seed, what, .. } = told;
-            assert_eq!((scene.as_str(), pixel.as_str(), sample), ("cornell", "7,5", 3));
-            assert_eq!(what.settings(&Lab::new(), &scene, 4, seed).unwrap().spec, spec);
+            assert_eq!((told.scene.as_str(), told.pixel.as_str(), told.sample), ("cornell", "7,5", 3));
+            assert_eq!(of(told), settings);
         }
         assert!(
             command("my scene.toml", &Settings::default(), InvalidSample { y: 0, x: 0, sample: 0 })

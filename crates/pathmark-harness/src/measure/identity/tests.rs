@@ -1,106 +1,8 @@
 use super::*;
 use crate::estimator::Roulette;
-use crate::measure::{AXES, Measured, Settings};
+use crate::measure::{Measured, Record, SETTINGS, image_columns, schedule_columns};
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
-
-/// Columns that change the image.
-const IMAGE: [&str; 16] = [
-    "scene",
-    "scene_hash",
-    "estimator",
-    "sampler",
-    "width",
-    "height",
-    "spp",
-    "seed",
-    "max_depth",
-    "camera_rays",
-    "roulette",
-    "clamp",
-    "filter",
-    "epsilon",
-    "precision",
-    "adaptive",
-];
-
-/// Columns that describe how the same image is rendered.
-const SCHEDULE: [&str; 11] = [
-    "strategy",
-    "decomposition",
-    "threads",
-    "ranks",
-    "rank_rule",
-    "output",
-    "kernel",
-    "kernel_fallback",
-    "simd",
-    "effects",
-    "accelerator",
-];
-
-/// Columns that identify the row, follow from the others, or hold measurements.
-const OTHER: [&str; 59] = [
-    "mpi",
-    "object_mse",
-    "within_tolerance",
-    "fireflies",
-    "black_pixels",
-    "image_write_s",
-    "schema",
-    "experiment",
-    "cell",
-    "repetition",
-    "order",
-    "target_error",
-    "time_limit_s",
-    "rounds",
-    "biased",
-    "jobs",
-    "workers_used",
-    "build_s",
-    "device_compile_s",
-    "device_copy_s",
-    "pilot_s",
-    "setup_s",
-    "makespan_s",
-    "merge_s",
-    "cpu_user_s",
-    "cpu_system_s",
-    "busy_sum_s",
-    "busy_max_s",
-    "gap_sum_s",
-    "tail_sum_s",
-    "job_min_s",
-    "job_median_s",
-    "job_max_s",
-    "voluntary_switches",
-    "involuntary_switches",
-    "foreign_cpu_s",
-    "steal_s",
-    "peak_rss_bytes",
-    "paths",
-    "rays",
-    "box_tests",
-    "primitive_tests",
-    "escaped",
-    "truncated",
-    "invalid_samples",
-    "estimated_rmse",
-    "mse",
-    "rmse",
-    "mse_display",
-    "rmse_display",
-    "rel_mse",
-    "variance",
-    "mean_radiance",
-    "checksum",
-    "warnings",
-    "error",
-    "commit",
-    "dirty",
-    "started_utc",
-];
 
 fn columns(record: &Record) -> Map<String, Value> {
     match serde_json::to_value(record).unwrap() {
@@ -122,26 +24,25 @@ fn varied(record: &Record, column: &str) -> Record {
     serde_json::from_value(Value::Object(columns)).unwrap()
 }
 
+/// Measurements and notes must not tell rows apart.
 #[test]
-fn every_column_distinguishes_images_or_schedules_or_neither() {
+fn the_columns_of_settings_distinguish_images_or_schedules_and_no_others_do() {
     let row = Record::default();
-    let sorted: BTreeSet<&str> = IMAGE.into_iter().chain(SCHEDULE).chain(OTHER).collect();
-    let own = columns(&row);
-    assert_eq!(own.keys().map(String::as_str).collect::<BTreeSet<_>>(), sorted);
-    for column in sorted {
+    let (image, schedule): (Vec<&str>, Vec<&str>) = (image_columns().collect(), schedule_columns().collect());
+    for column in columns(&row).keys().map(String::as_str) {
         let other = varied(&row, column);
-        assert_eq!(other.image_key() != row.image_key(), IMAGE.contains(&column), "{column}");
-        assert_eq!(other.schedule_key() != row.schedule_key(), SCHEDULE.contains(&column), "{column}");
+        assert_eq!(other.image_key() != row.image_key(), image.contains(&column), "{column}");
+        assert_eq!(other.schedule_key() != row.schedule_key(), schedule.contains(&column), "{column}");
     }
 }
 
 #[test]
 fn words_differ_where_keys_do() {
     let row = Record { max_depth: Some(3), spp: 4, ..Record::default() };
-    for column in IMAGE {
+    for column in image_columns() {
         assert_ne!(varied(&row, column).image_key().to_string(), row.image_key().to_string(), "{column}");
     }
-    for column in SCHEDULE {
+    for column in schedule_columns() {
         assert_ne!(varied(&row, column).schedule_key().to_string(), row.schedule_key().to_string(), "{column}");
     }
     // The same value on two axes gives two different words.
@@ -159,7 +60,7 @@ fn setup(change: impl Fn(&mut Settings)) -> Setup {
 }
 
 /// For each axis, a value that differs from the setups above.
-const OTHER_VALUES: [(&str, &str); 23] = [
+const OTHER_VALUES: [(&str, &str); 24] = [
     ("scene", "sky"),
     ("size", "9x6"),
     ("estimator", "mis"),
@@ -183,6 +84,7 @@ const OTHER_VALUES: [(&str, &str); 23] = [
     ("output", "channel-piece"),
     ("rank-rule", "guided"),
     ("ranks", "3"),
+    ("test-knob", "7"),
 ];
 
 #[test]
@@ -190,7 +92,7 @@ fn each_axis_gives_another_image_or_another_schedule_as_the_table_says() {
     let base = setup(|_| ());
     let (mut images, mut schedules) = (BTreeSet::from([base.image_key()]), BTreeSet::from([base.schedule_key()]));
     // The available instruction sets depend on the machine.
-    for axis in AXES.iter().filter(|axis| axis.name != "simd") {
+    for axis in SETTINGS.iter().filter(|axis| axis.name != "simd") {
         let (_, value) = OTHER_VALUES.iter().find(|(name, _)| *name == axis.name).expect("a value for each axis");
         let other = setup(|settings| axis.set(settings, value).unwrap());
         if axis.changes_image {
@@ -202,15 +104,6 @@ fn each_axis_gives_another_image_or_another_schedule_as_the_table_says() {
     }
     let words: BTreeSet<String> = images.iter().map(ToString::to_string).collect();
     assert_eq!(words.len(), images.len(), "{words:#?}");
-}
-
-/// The columns by the table of axes are those by which the keys differ.
-#[test]
-fn the_table_of_axes_names_the_columns_of_the_keys() {
-    let sorted = |columns: Vec<String>| columns.into_iter().collect::<BTreeSet<String>>();
-    let of = |columns: &[&str]| columns.iter().map(ToString::to_string).collect::<BTreeSet<String>>();
-    assert_eq!(sorted(image_columns()), of(&IMAGE));
-    assert_eq!(sorted(schedule_columns()), of(&SCHEDULE));
 }
 
 #[test]

@@ -1,4 +1,9 @@
-//! The three axes of a run, by name: the image, its pieces, and the schedule.
+//! The settings of a run, by name, and everything that follows from their list: keys, columns, options and labels.
+
+mod keys;
+mod list;
+mod table;
+mod value;
 
 use crate::error::{InputError, Result};
 use crate::film::check_size;
@@ -9,9 +14,15 @@ use serde::{Deserialize, Serialize};
 use std::num::NonZeroUsize;
 use std::sync::LazyLock;
 
+pub use keys::{ImageKey, ScheduleKey};
+pub(crate) use list::settings_list;
+pub use table::{SETTINGS, Setting, image_columns, parse_size, schedule_columns};
+pub(crate) use value::Asked;
+pub use value::Kind;
+
 /// Most workers that a user may request, and most threads that a strategy may start by its own rule: systems refuse
 /// some tens of thousands, and some of them end the process.
-pub(super) const LARGEST_THREADS: usize = 1 << 14;
+pub(crate) const LARGEST_THREADS: usize = 1 << 14;
 /// Most bytes that numbers of the user may reserve at once. Images of the largest size need a quarter of them, in
 /// pieces of usual sizes.
 pub const LARGEST_BYTES: u64 = 16 << 30;
@@ -20,50 +31,50 @@ pub const LARGEST_SPP: u32 = 1 << 24;
 /// Largest seed of an image under test: the seeds above belong to references.
 pub const LARGEST_SEED: u64 = REFERENCE_SEEDS - 1;
 
-/// The settings of a run. Every field is a name as on the command line or in an experiment.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Settings {
-    /// Scene: a name or a path.
-    pub scene: String,
-    /// Samples per pixel.
-    pub spp: u32,
-    /// Whether the samples of each cell of a grid depend on its noise; `spp` is then their mean.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub adaptive: bool,
-    /// The specification from which the kernel is built.
-    pub spec: Spec,
-    /// Decomposition of the film into jobs.
-    pub decomposition: String,
-    /// How pieces get into the film.
-    pub output: String,
-    /// The strategy that schedules them.
-    pub strategy: String,
-    /// Number of workers; with several processes, in each.
-    pub threads: usize,
-    /// The rule by which processes connected by MPI share the jobs, if there are any.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rank_rule: Option<String>,
-    /// Number of processes.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub ranks: Option<u16>,
+/// Reads the list until no entry is left: fields and defaults of those that are a run's own.
+macro_rules! asked {
+    ({} image { $($image:tt)* } schedule { $($schedule:tt)* }) => {
+        asked! { [] [] $($image)* $($schedule)* }
+    };
+    ([$($fields:tt)*] [$($defaults:tt)*]
+        $(#[doc = $about:literal])+ own $field:ident: $kind:ty = $default:expr, $setting:expr
+        $(, when $when:meta)? $(, read $read:meta)?; $($rest:tt)*
+    ) => {
+        asked! {
+            [$($fields)* $(#[doc = $about])+ $(#[$when])?
+                #[serde(default, skip_serializing_if = "is_unset")] pub $field: $kind,]
+            [$($defaults)* $(#[$when])? $field: $default,]
+            $($rest)*
+        }
+    };
+    ($fields:tt $defaults:tt
+        $(#[doc = $about:literal])+ $place:ident $field:ident: $kind:ty, $setting:expr
+        $(, when $when:meta)? $(, read $read:meta)?; $($rest:tt)*
+    ) => {
+        asked! { $fields $defaults $($rest)* }
+    };
+    ([$($fields:tt)*] [$($defaults:tt)*]) => {
+        /// The settings of a run. Every field is a name as on the command line or in an experiment.
+        #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub struct Settings {
+            $($fields)*
+            /// The specification from which the kernel is built.
+            pub spec: Spec,
+        }
+
+        impl Default for Settings {
+            fn default() -> Self {
+                Self { $($defaults)* spec: Spec::default() }
+            }
+        }
+    };
 }
 
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            scene: "cornell".to_string(),
-            spp: 16,
-            adaptive: false,
-            spec: Spec::default(),
-            decomposition: "tiles:32x32".to_string(),
-            output: "slots".to_string(),
-            strategy: "work-stealing".to_string(),
-            threads: available_threads(),
-            rank_rule: None,
-            ranks: None,
-        }
-    }
+settings_list!(asked {});
+
+fn is_unset<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// The name of a strategy on a decomposition.
@@ -72,7 +83,7 @@ pub fn schedule_name<'a>(strategy: &'a str, decomposition: &str) -> &'a str {
 }
 
 /// Refuses numbers of samples that no image of the estimator can have: it needs a multiple of `multiple`.
-pub(super) fn check_spp(spp: u32, estimator: &str, multiple: u32) -> Result<()> {
+pub(crate) fn check_spp(spp: u32, estimator: &str, multiple: u32) -> Result<()> {
     if !(1..=LARGEST_SPP).contains(&spp) {
         let allowed = format!("1 to {LARGEST_SPP}");
         return Err(InputError::new("spp", spp.to_string(), "is out of range").allowed(allowed).into());
@@ -117,7 +128,7 @@ impl Settings {
 
     /// Refuses numbers out of range, before anything is allocated or started. Seeds of references are allowed; callers
     /// that take a seed from a user refuse those.
-    pub(super) fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         check_size(self.spec.width, self.spec.height)?;
         if !(1..=LARGEST_THREADS).contains(&self.threads) {
             let allowed = format!("1 to {LARGEST_THREADS}");

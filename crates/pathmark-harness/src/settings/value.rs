@@ -1,0 +1,137 @@
+//! The types of settings: what a user says, the column of a row that keeps it, and both as text.
+
+use super::table::parse_size;
+use crate::kernel::Spec;
+use std::str::FromStr;
+
+/// The type of a setting's value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A name.
+    Name,
+    /// A name, or a choice that fits the scene.
+    Fitting,
+    /// Yes or no.
+    Switch,
+    /// A number, or none.
+    Count,
+    /// Samples per pixel.
+    Samples,
+    /// A seed.
+    Seed,
+    /// Workers.
+    Workers,
+    /// Columns and rows.
+    Size,
+}
+
+/// A value as text.
+pub(crate) trait Value {
+    fn set(&mut self, text: &str) -> Option<()>;
+    /// Empty if it is left to the scene or the estimator.
+    fn show(&self) -> String;
+}
+
+/// A type of the list of settings.
+pub trait Asked {
+    /// Its type in a row and in keys.
+    type Column;
+    /// The name of that type.
+    const COLUMN: &'static str;
+    const KIND: Kind;
+
+    fn column(&self) -> Self::Column;
+    fn of(column: Self::Column) -> Self;
+    /// A column as text; `None` if it is empty on purpose.
+    fn text(column: &Self::Column) -> Option<String>;
+}
+
+/// A type that rows hold as it is, and its text there.
+macro_rules! asked {
+    ($type:ty, $kind:ident, $text:expr) => {
+        impl Asked for $type {
+            type Column = Self;
+            const COLUMN: &'static str = stringify!($type);
+            const KIND: Kind = Kind::$kind;
+
+            fn column(&self) -> Self {
+                self.clone()
+            }
+
+            fn of(column: Self) -> Self {
+                column
+            }
+
+            fn text(column: &Self) -> Option<String> {
+                let text: fn(&Self) -> Option<String> = $text;
+                text(column)
+            }
+        }
+    };
+    ($($type:ty, $kind:ident, $text:expr;)*) => { $(
+        asked!($type, $kind, $text);
+
+        impl Value for $type {
+            fn set(&mut self, text: &str) -> Option<()> {
+                *self = text.parse().ok()?;
+                Some(())
+            }
+
+            fn show(&self) -> String {
+                self.to_string()
+            }
+        }
+    )* };
+}
+
+asked! {
+    String, Name, |name| Some(name.clone());
+    bool, Switch, |switch| switch.then(|| switch.to_string());
+    u32, Samples, |spp| Some(spp.to_string());
+    u64, Seed, |seed| Some(seed.to_string());
+    usize, Workers, |threads| Some(threads.to_string());
+}
+
+asked!(Option<u16>, Count, |count| count.map(|count| count.to_string()));
+
+/// Rows keep the name that was chosen, or nothing.
+impl Asked for Option<String> {
+    type Column = String;
+    const COLUMN: &'static str = "String";
+    const KIND: Kind = Kind::Fitting;
+
+    fn column(&self) -> String {
+        self.clone().unwrap_or_default()
+    }
+
+    fn of(column: String) -> Self {
+        Some(column).filter(|name| !name.is_empty())
+    }
+
+    fn text(column: &String) -> Option<String> {
+        Self::of(column.clone())
+    }
+}
+
+impl<T: FromStr + ToString> Value for Option<T> {
+    fn set(&mut self, text: &str) -> Option<()> {
+        *self = Some(text.parse().ok()?);
+        Some(())
+    }
+
+    fn show(&self) -> String {
+        self.as_ref().map(ToString::to_string).unwrap_or_default()
+    }
+}
+
+/// Columns and rows.
+impl Value for Spec {
+    fn set(&mut self, text: &str) -> Option<()> {
+        (self.width, self.height) = parse_size(text).ok()?;
+        Some(())
+    }
+
+    fn show(&self) -> String {
+        format!("{}x{}", self.width, self.height)
+    }
+}
