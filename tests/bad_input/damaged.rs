@@ -135,8 +135,8 @@ fn times_that_no_clock_shows_are_refused_with_their_line() {
     };
     for (column, values) in [
         ("makespan_s", &["NaN", "inf", "-inf", "0", "-0.0", "-1.5", "1e999"][..]),
-        ("setup_s", &["NaN", "inf", "-1e-9"]),
-        ("gap_sum_s", &["NaN", "-inf"]),
+        ("strategy_setup_s", &["NaN", "inf", "-1e-9"]),
+        ("idle_between_jobs_s", &["NaN", "-inf"]),
     ] {
         for value in values {
             with(column, value, "");
@@ -149,7 +149,9 @@ fn times_that_no_clock_shows_are_refused_with_their_line() {
         }
     }
     // Rounding may leave a difference of times below 0, and a failed row has no time.
-    for (column, value, error) in [("gap_sum_s", "-1e-9", ""), ("setup_s", "0", ""), ("makespan_s", "0", "it broke")] {
+    for (column, value, error) in
+        [("idle_between_jobs_s", "-1e-9", ""), ("strategy_setup_s", "0", ""), ("makespan_s", "0", "it broke")]
+    {
         with(column, value, error);
         finish(pathmark(folder.path(), &["rank", "out/tiny"])).with_code(0);
     }

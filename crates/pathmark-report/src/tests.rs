@@ -53,7 +53,7 @@ pub(super) fn row() -> Record {
         cpu_user_s: Some(1.0),
         cpu_system_s: Some(0.0),
         busy_sum_s: Some(1.0),
-        paths: Some(192),
+        samples: Some(192),
         rays: Some(500),
         mse: Some(0.01),
         mean_radiance: Some(0.5),

@@ -55,19 +55,19 @@ const COLUMNS: [&str; 39] = [
     "output",
     "threads",
     "repetition",
-    "order",
+    "run_order",
     "jobs",
     "workers_used",
     "pilot_s",
-    "setup_s",
+    "strategy_setup_s",
     "makespan_s",
     "merge_s",
     "busy_sum_s",
     "busy_max_s",
-    "gap_sum_s",
-    "tail_sum_s",
-    "foreign_cpu_s",
-    "paths",
+    "idle_between_jobs_s",
+    "idle_tail_s",
+    "other_cpu_s",
+    "samples",
     "rays",
     "invalid_samples",
     "checksum",
@@ -192,7 +192,7 @@ fn every_schedule_gives_the_same_checksum() {
         checksums.insert(record["checksum"].as_str().filter(|text| text.len() == 16).unwrap().to_string());
         let missing: Vec<_> = COLUMNS.iter().filter(|column| record.get(column).is_none()).collect();
         assert!(missing.is_empty(), "{missing:?}");
-        assert_eq!(record["paths"], 24 * 16 * 4);
+        assert_eq!(record["samples"], 24 * 16 * 4);
         record
     };
     for strategy in names("strategies") {

@@ -84,7 +84,7 @@ impl Baseline {
         let job = CellJob { points, trace: None, ..job.clone() };
         let mut rows = Vec::new();
         for record in job.run_in_child_of(Ok(self.program.clone()), limit) {
-            let record = Record { order: job.order, ..record };
+            let record = Record { run_order: job.order, ..record };
             if !self.has_rows {
                 // The rows say which build measured them.
                 self.run.program = version_of(&self.program);

@@ -77,7 +77,7 @@ impl CellJob {
             experiment: self.experiment.clone(),
             cell: point.cell.clone(),
             repetition: self.repetition,
-            order: self.order,
+            run_order: self.order,
             ..record
         }
     }

@@ -13,7 +13,7 @@ type Count = fn(&Record) -> Option<u64>;
 /// The counts, by the names of their columns. None of them depends on the schedule.
 const COUNTS: [(&str, Count); 5] = [
     ("jobs", |row| Some(row.jobs as u64)),
-    ("paths", |row| row.paths),
+    ("samples", |row| row.samples),
     ("rays", |row| row.rays),
     ("box_tests", |row| row.box_tests),
     ("primitive_tests", |row| row.primitive_tests),

@@ -48,10 +48,10 @@ impl Part {
             };
             let repetition = self.shard.repetition(row.repetition);
             let repetition = repetition.ok_or_else(|| too_large("repetition", row.repetition.to_string()))?;
-            let order = row.order.checked_mul(u64::from(self.shard.count));
+            let order = row.run_order.checked_mul(u64::from(self.shard.count));
             let order = order.and_then(|order| order.checked_add(u64::from(self.shard.index - 1)));
-            let order = order.ok_or_else(|| too_large("order", row.order.to_string()))?;
-            Ok(Record { repetition, order, ..row.clone() })
+            let order = order.ok_or_else(|| too_large("order", row.run_order.to_string()))?;
+            Ok(Record { repetition, run_order: order, ..row.clone() })
         };
         self.rows.iter().map(number).collect()
     }
@@ -133,7 +133,7 @@ pub fn merge_sweeps(folders: &[PathBuf], out: &Path, partial: bool, command: &st
             for part in &parts {
                 rows.extend(part.numbered()?);
             }
-            rows.sort_by_key(|row| row.order);
+            rows.sort_by_key(|row| row.run_order);
             let sweep = MergedSweep { out, name: name.clone(), rows: rows.len(), missing: missing.clone() };
             plans.push((sweep, parts, rows));
         }

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 pub(super) const RECORDS: &str = "records.csv";
 
 /// Versions of the columns that can be read. The older ones only lack columns that may be empty.
-const READABLE: [u32; 4] = [7, 8, 9, SCHEMA];
+const READABLE: [u32; 5] = [7, 8, 9, 10, SCHEMA];
 
 /// An open file of records, locked against a second sweep.
 pub struct RecordsFile {
@@ -99,7 +99,8 @@ fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
     let mut records = Vec::new();
     let mut seen = HashSet::new();
     let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let columns = reader.headers().cloned().unwrap_or_default();
+    let columns: StringRecord =
+        reader.headers().map(|names| names.iter().map(Column::new_name).collect()).unwrap_or_default();
     let schema = columns.iter().position(|column| column == "schema");
     let times = times(&columns);
     for row in reader.records() {
@@ -138,7 +139,7 @@ fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
 }
 
 /// Columns of seconds that are differences of others, so that rounding may leave them below 0.
-const DIFFERENCES: [&str; 3] = ["gap_sum_s", "tail_sum_s", "foreign_cpu_s"];
+const DIFFERENCES: [&str; 3] = ["idle_between_jobs_s", "idle_tail_s", "other_cpu_s"];
 
 /// The columns of seconds, with their places in a row.
 fn times(columns: &StringRecord) -> Vec<(usize, &'static str)> {

@@ -77,7 +77,7 @@ impl<'a> Running<'a> {
             limits,
             lowest_seed: sweep.cells.iter().map(|cell| cell.settings.spec.seed).min(),
             // Failed rows were dropped with their numbers, so the number of rows may be in use already.
-            order: done.iter().map(|record| record.order + 1).max().unwrap_or(0),
+            order: done.iter().map(|record| record.run_order + 1).max().unwrap_or(0),
             repetition: done.iter().map(|record| record.repetition + 1).max().unwrap_or(0),
             told: HashSet::new(),
             summary,
@@ -134,7 +134,7 @@ impl<'a> Running<'a> {
             self.decisions.note(&other, false);
         }
         for ((point, record), _) in cell.points.iter().zip(rows).zip(missing).filter(|(_, is_missing)| *is_missing) {
-            self.add(Record { order: self.order, ..record }, &point.image)?;
+            self.add(Record { run_order: self.order, ..record }, &point.image)?;
         }
         Ok(())
     }

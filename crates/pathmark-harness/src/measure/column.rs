@@ -13,7 +13,24 @@ pub struct Column {
     pub since: u32,
 }
 
+/// Columns that had another name up to version 10.
+const RENAMED: &[(&str, &str)] = &[
+    ("gap_sum_s", "idle_between_jobs_s"),
+    ("tail_sum_s", "idle_tail_s"),
+    ("setup_s", "strategy_setup_s"),
+    ("build_s", "kernel_build_s"),
+    ("order", "run_order"),
+    ("paths", "samples"),
+    ("escaped", "escaped_rays"),
+    ("foreign_cpu_s", "other_cpu_s"),
+];
+
 impl Column {
+    /// Today's name of a column; names of the version before are read for one release.
+    pub fn new_name(name: &str) -> &str {
+        RENAMED.iter().find(|(old, _)| *old == name).map_or(name, |(_, new)| new)
+    }
+
     pub(super) const fn new(name: &'static str, about: &'static str, kind: &'static str, since: u32) -> Self {
         Self { name, about, kind, since }
     }

@@ -78,7 +78,7 @@ impl ExternalRun {
             cpu_user_s: self.cpu_s.map(|cpu| cpu[0]),
             cpu_system_s: self.cpu_s.map(|cpu| cpu[1]),
             mean_radiance: Some(self.image.mean().iter().sum::<f64>() / 3.0),
-            paths: Some(u64::from(settings.spec.width) * u64::from(settings.spec.height) * u64::from(settings.spp)),
+            samples: Some(u64::from(settings.spec.width) * u64::from(settings.spec.height) * u64::from(settings.spp)),
             ..external_row(settings, scene, errors)
         }
     }

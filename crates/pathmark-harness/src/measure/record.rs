@@ -13,7 +13,7 @@ use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 
 /// Version of the columns.
-pub const SCHEMA: u32 = 10;
+pub const SCHEMA: u32 = 11;
 
 settings_list!(columns {
     /// A row. A run that failed is a row too: `error` says why, and columns without a measurement are empty.
@@ -46,25 +46,25 @@ settings_list!(columns {
         /// Number of the repetition, from 0.
         pub repetition: u32,
         /// Position in the order in which the sweep ran.
-        pub order: u64,
+        pub run_order: u64,
         /// Number of jobs.
         pub jobs: usize,
         /// Workers that did at least one job; empty, like all measurements, if the run failed.
         pub workers_used: Option<u32>,
         /// Seconds to build the kernel and the scene's acceleration structure.
         #[since(3)]
-        pub build_s: Option<f64>,
-        /// Seconds of `build_s` to compile programs for devices; empty without devices.
+        pub kernel_build_s: Option<f64>,
+        /// Seconds of `kernel_build_s` to compile programs for devices; empty without devices.
         #[since(8)]
         pub device_compile_s: Option<f64>,
-        /// Seconds of `build_s` to copy the scene to devices; empty without devices.
+        /// Seconds of `kernel_build_s` to copy the scene to devices; empty without devices.
         #[since(8)]
         pub device_copy_s: Option<f64>,
         /// Seconds of the pilot that estimates the cost of the pieces, where the strategy needs it.
         #[since(2)]
         pub pilot_s: Option<f64>,
         /// Seconds to create the strategy, including its thread pool if it keeps one.
-        pub setup_s: Option<f64>,
+        pub strategy_setup_s: Option<f64>,
         /// Seconds from handing the jobs to the strategy until it returned.
         pub makespan_s: Option<f64>,
         /// Seconds to merge the pieces.
@@ -79,10 +79,10 @@ settings_list!(columns {
         pub busy_max_s: Option<f64>,
         /// Seconds that workers spent before their first job and between jobs, over all workers.
         #[since(2)]
-        pub gap_sum_s: Option<f64>,
+        pub idle_between_jobs_s: Option<f64>,
         /// Seconds from each worker's last job to the end of the run, over all workers. Busy time, gaps and tails add up to workers x makespan.
         #[since(2)]
-        pub tail_sum_s: Option<f64>,
+        pub idle_tail_s: Option<f64>,
         /// Seconds of the shortest job.
         pub job_min_s: Option<f64>,
         /// Seconds of the median job.
@@ -96,7 +96,7 @@ settings_list!(columns {
         /// CPU seconds of other programs on the machine during the makespan; up to schema 9 with `steal_s`. Empty where the
         /// system does not report it.
         #[since(2)]
-        pub foreign_cpu_s: Option<f64>,
+        pub other_cpu_s: Option<f64>,
         /// CPU seconds that a virtual machine's host gave to others during the makespan. Empty where the system does not
         /// report it.
         #[since(10)]
@@ -104,7 +104,7 @@ settings_list!(columns {
         /// Peak resident memory of the process until the last job returned, without merging and writing of images.
         pub peak_rss_bytes: Option<i64>,
         /// Number of paths: the samples of all pixels.
-        pub paths: Option<u64>,
+        pub samples: Option<u64>,
         /// Rays that were traced.
         pub rays: Option<u64>,
         /// Tests of a ray against a box of the acceleration structure.
@@ -114,7 +114,7 @@ settings_list!(columns {
         #[since(3)]
         pub primitive_tests: Option<u64>,
         /// Rays of paths that left the scene.
-        pub escaped: Option<u64>,
+        pub escaped_rays: Option<u64>,
         /// Paths cut at the bounce limit.
         pub truncated: Option<u64>,
         /// Samples that were NaN, infinite or negative.
@@ -292,13 +292,13 @@ impl Record {
             let all = counts.rays * scene.owners.len() as u64;
             record.primitive_tests = Some(if choice.is_hierarchical() { counts.primitive_tests } else { all });
         }
-        record.build_s = Some(outcome.build_s);
+        record.kernel_build_s = Some(outcome.build_s);
         record.device_compile_s = outcome.device.map(|device| device.compile_s);
         record.device_copy_s = outcome.device.map(|device| device.copy_s);
         record.jobs = durations.len();
         record.workers_used = Some(outcome.workers_used);
         record.pilot_s = Some(outcome.pilot_s);
-        record.setup_s = Some(outcome.setup_s);
+        record.strategy_setup_s = Some(outcome.setup_s);
         record.makespan_s = Some(outcome.makespan_s);
         record.merge_s = Some(outcome.merge_s);
         if let Some(cpu) = &outcome.cpu {
@@ -306,22 +306,22 @@ impl Record {
             record.cpu_system_s = Some(cpu.system_s);
             record.voluntary_switches = Some(cpu.voluntary_switches);
             record.involuntary_switches = Some(cpu.involuntary_switches);
-            record.foreign_cpu_s = cpu.foreign_s;
+            record.other_cpu_s = cpu.foreign_s;
             record.steal_s = cpu.steal_s;
             record.peak_rss_bytes = cpu.peak_rss_bytes;
         }
         if let Some(balance) = &balance {
             record.busy_sum_s = Some(balance.busy_s());
             record.busy_max_s = balance.workers.iter().map(|share| share.busy_s).reduce(f64::max);
-            record.gap_sum_s = Some(balance.gap_s());
-            record.tail_sum_s = Some(balance.tail_s());
+            record.idle_between_jobs_s = Some(balance.gap_s());
+            record.idle_tail_s = Some(balance.tail_s());
         }
         record.job_min_s = durations.iter().copied().reduce(f64::min);
         record.job_median_s = median(&durations);
         record.job_max_s = durations.iter().copied().reduce(f64::max);
-        record.paths = Some(counts.paths);
+        record.samples = Some(counts.paths);
         record.rays = Some(counts.rays);
-        record.escaped = Some(counts.escaped);
+        record.escaped_rays = Some(counts.escaped);
         record.truncated = Some(counts.truncated);
         record.invalid_samples = Some(counts.invalid);
         record.variance = Some(outcome.film.mean_variance());

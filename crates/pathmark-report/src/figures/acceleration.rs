@@ -201,6 +201,6 @@ fn table(results: &Results, accelerators: &[(usize, &str)]) -> Block {
         .number("primitives per ray", Decimals(1), |rows| {
             typical(rows, |row| Some(row.primitive_tests? as f64 / row.rays? as f64))
         })
-        .number("ms to build", Decimals(3), |rows| typical(rows, |row| Some(row.build_s? * 1e3)))
+        .number("ms to build", Decimals(3), |rows| typical(rows, |row| Some(row.kernel_build_s? * 1e3)))
         .end()
 }

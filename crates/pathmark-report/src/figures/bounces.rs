@@ -89,7 +89,7 @@ fn steps(name: &str, rows: &[&Row]) -> Vec<Step> {
         let running = up_to.over(&whole).values();
         let cut = rows.iter().filter(|row| row.max_depth == Some(limit));
         let (cut, paths) = cut
-            .filter_map(|row| Some((row.truncated? as f64, row.paths? as f64)))
+            .filter_map(|row| Some((row.truncated? as f64, row.samples? as f64)))
             .fold((0.0, 0.0), |sum, row| (sum.0 + row.0, sum.1 + row.1));
         let light = Estimated::mean(&own.over(&whole).values())?;
         let up_to = running.iter().sum::<f64>() / running.len() as f64;

@@ -60,8 +60,8 @@ fn setting(image: &mut ImageKey, schedule: &mut ScheduleKey) {
 
 impl Times {
     fn of(rows: &[&Row]) -> Self {
-        let sample_s = Repeats::means(rows.iter().copied(), setting, |row| Some(row.cpu_s()? / row.paths? as f64));
-        let rays = rows.first().and_then(|row| Some(row.rays? as f64 / row.paths? as f64));
+        let sample_s = Repeats::means(rows.iter().copied(), setting, |row| Some(row.cpu_s()? / row.samples? as f64));
+        let rays = rows.first().and_then(|row| Some(row.rays? as f64 / row.samples? as f64));
         Self { sample_s, rays }
     }
 

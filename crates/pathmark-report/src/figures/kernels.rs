@@ -68,7 +68,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("workload", |line| line.name.clone())
         .column("threads", |line| line.threads.to_string())
         .column("kernel", |line| line.kernel.clone())
-        .number("Msamples/s", Decimals(2), |line| line.rate(|row| row.paths))
+        .number("Msamples/s", Decimals(2), |line| line.rate(|row| row.samples))
         .number("Mrays/s", Decimals(2), |line| line.rate(|row| row.rays))
         .estimated(format!("times as fast as {yardstick}"), Decimals(2), |line| line.ratio.map(Estimated::from));
     if results.rows().any(|row| row.device_compile_s.is_some()) {

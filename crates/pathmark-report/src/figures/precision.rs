@@ -63,8 +63,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .number("RMSE, double", Decimals(4), |pair| rmse(&pair.double))
         .number("RMSE, single", Decimals(4), |pair| rmse(&pair.single))
         .estimated("light of single / light of double - 1", Significant(2), |pair| pair.light.map(Estimated::from))
-        .column("rays that met nothing, double", |pair| sum(&pair.double, |row| row.escaped))
-        .column("rays that met nothing, single", |pair| sum(&pair.single, |row| row.escaped))
+        .column("rays that met nothing, double", |pair| sum(&pair.double, |row| row.escaped_rays))
+        .column("rays that met nothing, single", |pair| sum(&pair.single, |row| row.escaped_rays))
         .column("invalid samples, double", |pair| sum(&pair.double, |row| row.invalid_samples))
         .column("invalid samples, single", |pair| sum(&pair.single, |row| row.invalid_samples))
         .end();

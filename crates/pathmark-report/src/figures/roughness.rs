@@ -97,7 +97,7 @@ fn table(pairs: &[Pair<'_>]) -> Block {
         [(pair.scene, cosine, pair.cosine), (pair.scene, "facets", pair.facets)]
     });
     let lines = ways.filter_map(|(scene, directions, rows)| {
-        let time = typical(rows, |row| Some(row.makespan_s? / row.paths? as f64 * 1e9))?;
+        let time = typical(rows, |row| Some(row.makespan_s? / row.samples? as f64 * 1e9))?;
         Some((scene, directions, rows.len(), typical(rows, variance), time))
     });
     // Monte Carlo efficiency: 1/(variance x time), with the time of a sample in microseconds.

@@ -57,7 +57,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let rays = |contender: &Contender| {
         let image = &contender.image;
         let rows = totals.get(&(&image.scene, &image.estimator, &image.roulette));
-        let counts = rows.into_iter().flatten().filter_map(|row| Some((row.rays? as f64, row.paths? as f64)));
+        let counts = rows.into_iter().flatten().filter_map(|row| Some((row.rays? as f64, row.samples? as f64)));
         let (rays, paths) = counts.fold((0.0, 0.0), |sum, row| (sum.0 + row.0, sum.1 + row.1));
         rays / paths
     };

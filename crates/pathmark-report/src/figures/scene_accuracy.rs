@@ -89,8 +89,8 @@ fn accuracies(results: &Results) -> Result<Vec<Accuracy>> {
             radiance,
             by_seed: Repeats::of_images(rows.iter().copied(), without_scene, |row| Some(mse(row)?.sqrt())),
             error,
-            rays: typical(&rows, |row| Some(row.rays? as f64 / row.paths? as f64))?,
-            sample_s: typical(&rows, |row| Some(row.cpu_s()? / row.paths? as f64))?,
+            rays: typical(&rows, |row| Some(row.rays? as f64 / row.samples? as f64))?,
+            sample_s: typical(&rows, |row| Some(row.cpu_s()? / row.samples? as f64))?,
             pixels: f64::from(first.width) * f64::from(first.height),
             image,
         };

@@ -115,6 +115,9 @@ pub struct Entry {
     pub checksum: Option<&'static str>,
 }
 
+/// The name of `sobol` in rows of version 0.1, whose `sobol` was another one of this kind.
+const OLD_SOBOL: &str = "sobol-burley";
+
 macro_rules! samplers {
     (
         keyed { $($keyed:literal, $keyed_about:literal, $keyed_checksum:literal => $Keyed:ident;)* }
@@ -139,7 +142,7 @@ macro_rules! samplers {
 
         /// Whether the sampler of that name spreads a pixel's samples more evenly than independent random numbers.
         pub fn is_spread(name: &str) -> bool {
-            [$($spread),*].contains(&name)
+            [$($spread,)* OLD_SOBOL].contains(&name)
         }
 
         /// Creates the stateful sampler of that name for an image's seed; `None` if there is none.
