@@ -24,7 +24,7 @@
 //!
 //! # Where to start
 //!
-//! * To add your own pool, kernel, estimator, workload, scene or experiment: [`Lab`]. The package's `examples/own_*.rs`
+//! * To add your own pool, kernel, estimator, workload, scene or experiment: [`Lab`]. The package's `examples/custom_*.rs`
 //!   and `examples/custom_kernel.rs` are such programs.
 //! * To test your own pool: [`strategy`], a crate without the renderer, and its contract.
 //! * To render from a program, as above: [`measure::Setup`]; [`image_io`] writes the picture, [`metric`] compares two.

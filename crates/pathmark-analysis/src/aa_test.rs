@@ -46,7 +46,6 @@ impl fmt::Display for Verdict {
 /// The number of misses, and whether the stated levels explain it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Calibration {
-    /// Number of comparisons.
     pub comparisons: usize,
     /// Expected number of misses, by the levels.
     pub expected: f64,

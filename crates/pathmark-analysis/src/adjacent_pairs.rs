@@ -24,7 +24,6 @@ pub const FEWEST_PROCESSES: usize = 3;
 pub struct PairedRatio {
     /// The geometric mean over processes, with its interval.
     pub ratio: Estimate,
-    /// Pairs in all.
     pub pairs: usize,
     /// Processes: the independent values.
     pub processes: usize,
@@ -90,7 +89,6 @@ fn spread_of(logarithms: &[Vec<f64>]) -> Option<Spread> {
 /// The durations of a measurement by pairs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Costs {
-    /// Seconds of a pair.
     pub pair_s: f64,
     /// Seconds to start a process and warm it up.
     pub process_s: f64,
@@ -99,13 +97,10 @@ pub struct Costs {
 /// A number of pairs that reaches a precision.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PowerPlan {
-    /// Processes.
     pub processes: usize,
-    /// Pairs in each.
     pub pairs: usize,
     /// Expected half width of the interval, as a share of the ratio.
     pub half_width: f64,
-    /// Seconds in all.
     pub seconds: f64,
 }
 

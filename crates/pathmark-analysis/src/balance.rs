@@ -14,7 +14,6 @@ pub type Span = (usize, f64, f64);
 /// The time of one worker, by its use.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Share {
-    /// Number of its jobs.
     pub jobs: usize,
     /// Seconds in jobs.
     pub busy_s: f64,
@@ -96,7 +95,6 @@ impl Balance {
         self.workers.iter().map(|share| share.tail_s).sum()
     }
 
-    /// Number of jobs.
     pub fn jobs(&self) -> usize {
         self.workers.iter().map(|share| share.jobs).sum()
     }

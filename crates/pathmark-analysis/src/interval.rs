@@ -5,9 +5,7 @@ use serde::Serialize;
 /// A two-sided confidence interval, in the unit of the estimated value.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Interval {
-    /// Lower end.
     pub low: f64,
-    /// Upper end.
     pub high: f64,
     /// The confidence reached, in (0, 1). It may be above or below the requested level where only a few levels exist.
     pub level: f64,

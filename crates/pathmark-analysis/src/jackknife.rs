@@ -65,7 +65,6 @@ impl SeedCurves {
         &self.whole
     }
 
-    /// Returns the number of seeds.
     pub fn seeds(&self) -> usize {
         self.without.len()
     }

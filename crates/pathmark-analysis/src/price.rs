@@ -125,7 +125,6 @@ pub struct Price {
     pub rmse: f64,
     /// Samples per pixel, not rounded.
     pub spp: Estimate,
-    /// Seconds.
     pub seconds: Estimate,
 }
 
@@ -149,7 +148,6 @@ impl Renderer {
         Some(Estimate { value: between.value, interval: Interval::between(low, high, level)? })
     }
 
-    /// Returns the RMSE after `seconds`.
     pub fn rmse_after(&self, seconds: f64) -> Option<Estimate> {
         let time = &self.seconds_per_spp;
         let at = |per_spp: f64| self.law.rmse(self.curves.whole(), seconds / per_spp);

@@ -22,7 +22,6 @@ pub struct PowerLaw {
     /// Change of the exponent for each factor e in x, with an interval over the seeds; 0 for a power law. `None` for
     /// curves of two points, which any line fits.
     pub bend: Option<Estimate>,
-    /// Number of seeds.
     pub seeds: usize,
 }
 

@@ -11,7 +11,6 @@ pub fn scene_of(primitives: Primitives) -> Scene {
     scene
 }
 
-/// A scene of spheres.
 pub fn scene_of_spheres(spheres: Vec<Sphere>) -> Scene {
     scene_of(Primitives { spheres, ..Primitives::default() })
 }

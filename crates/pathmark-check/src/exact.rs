@@ -53,7 +53,6 @@ pub fn unsplit_estimators() -> impl Iterator<Item = &'static str> {
     ESTIMATORS.iter().filter(|entry| entry.is_one_path && entry.max_depth.is_none()).map(|entry| entry.name)
 }
 
-/// All estimators.
 pub fn every_estimator() -> impl Iterator<Item = &'static str> {
     ESTIMATORS.iter().map(|entry| entry.name)
 }

@@ -29,7 +29,6 @@ pub(super) fn run(scene: &Scene, spec: Spec, spp: u32) -> Outcome {
 /// Mean over all samples of a film, and variance within the pixels.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Moments {
-    /// The mean.
     pub(super) mean: f64,
     /// The variance of a sample within its pixel.
     pub(super) variance: f64,

@@ -56,7 +56,6 @@ pub fn ball(name: &str, center: [f64; 3], radius: f64, material: &str) -> String
     named(name, &sphere(center, radius), material, 0.0)
 }
 
-/// A sphere.
 pub fn sphere(center: [f64; 3], radius: f64) -> String {
     format!("{{ sphere = {{ center = {center:?}, radius = {radius:?} }} }}")
 }

@@ -28,7 +28,6 @@ pub struct Trial {
 /// The outcome of a case.
 #[derive(Debug, Clone, Serialize)]
 pub struct Outcome {
-    /// All trials.
     pub trials: Vec<Trial>,
     /// Why the case, or a part of it, was skipped.
     pub skipped: Vec<String>,

@@ -14,7 +14,6 @@ pub enum DeviceError {
     /// This machine has no such device.
     #[error("{id} is not available: {why}")]
     Missing {
-        /// Its name.
         id: String,
         /// The attempts that failed.
         why: String,
@@ -22,7 +21,6 @@ pub enum DeviceError {
     /// The compiler refused the program.
     #[error("{compiler} refused the program:\n{log}")]
     Compiler {
-        /// The compiler's name.
         compiler: String,
         /// The compiler's messages.
         log: String,

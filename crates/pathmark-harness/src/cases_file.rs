@@ -11,7 +11,6 @@ pub const FOLDER: &str = "check";
 /// The list's file in this folder.
 pub const FILE: &str = "cases.csv";
 
-/// One case.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CaseRow {
@@ -21,15 +20,12 @@ pub struct CaseRow {
     pub tries: String,
     /// Whether no trial failed.
     pub pass: bool,
-    /// Number of trials.
     pub trials: usize,
     /// Number of failed trials.
     pub failed: usize,
     /// Variant of the trial that is shown: the first that failed, or else the last.
     pub variant: String,
-    /// Value expected in it.
     pub expected: String,
-    /// Value found in it.
     pub found: String,
     /// Why the case, or a part of it, was skipped.
     pub skipped: String,

@@ -27,15 +27,11 @@ pub struct PriceRow {
     pub without: String,
     /// Error of the program's method, with its 95 % interval.
     pub error_with: f64,
-    /// Lower end.
     pub error_with_low: f64,
-    /// Upper end.
     pub error_with_high: f64,
     /// Error of the alternative.
     pub error_without: f64,
-    /// Lower end.
     pub error_without_low: f64,
-    /// Upper end.
     pub error_without_high: f64,
     /// The operation that is timed.
     pub operation: String,
@@ -45,9 +41,7 @@ pub struct PriceRow {
     pub ns_without: Option<f64>,
     /// Time with the guard divided by time without: median over paired rounds, with its 95 % interval.
     pub time_ratio: Option<f64>,
-    /// Lower end.
     pub time_ratio_low: Option<f64>,
-    /// Upper end.
     pub time_ratio_high: Option<f64>,
 }
 

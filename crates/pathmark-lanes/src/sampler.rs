@@ -8,11 +8,8 @@ use pathmark_tracer::sampling::{Purpose, SampleKey, hash, independent, mix, sobo
 /// A sampler that is available in lanes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InLanes {
-    /// `independent`.
     Independent,
-    /// `hash`.
     Hash,
-    /// `sobol`.
     Sobol,
 }
 

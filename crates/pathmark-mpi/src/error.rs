@@ -21,7 +21,6 @@ pub enum MpiError {
     /// The library lacks a function.
     #[error("{library} is not an MPI library, or is too old: it has no {symbol}")]
     NoSymbol {
-        /// The library's name.
         library: String,
         /// The function.
         symbol: &'static str,
@@ -35,7 +34,6 @@ pub enum MpiError {
         launched: usize,
         /// Number of processes according to the library.
         known: usize,
-        /// The library's name.
         library: String,
     },
     /// A call failed.

@@ -135,7 +135,6 @@ pub(super) fn curves_of_seeds(rows: &[&Row]) -> Vec<(Curve, f64)> {
     seeds.iter().filter_map(of_seed).collect()
 }
 
-/// One value per seed.
 pub(super) fn one_per_seed(rows: &[&Row], value: impl Fn(&Row) -> Option<f64>) -> Vec<f64> {
     by_seed(rows, value).into_values().collect()
 }

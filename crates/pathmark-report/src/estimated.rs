@@ -58,7 +58,6 @@ impl Estimated {
         Dot { value: self.value, interval: self.bar(), count: self.count, hollow: self.is_partial }
     }
 
-    /// The point above `x`.
     pub(super) fn above(&self, x: f64) -> Point {
         Point { count: self.count, hollow: self.is_partial, ..Point::new(x, self.value).with_y(self.bar()) }
     }

@@ -10,7 +10,7 @@ use crate::experiment::{Definition, EXTERNAL, Profile, RunFile, read_records, re
 use crate::image_io::{self, Image};
 use crate::input::read_text;
 use crate::lab::Lab;
-use crate::measure::{Doubts, ImageKey, LeftOut, Record, SETTINGS, Setting, TraceFile};
+use crate::measure::{ImageKey, LeftOut, Record, SETTINGS, Setting, TimingConcerns, TraceFile};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -73,7 +73,6 @@ impl Results {
         group(self.rows(), key)
     }
 
-    /// Rows by schedule.
     pub(super) fn by_schedule(&self) -> BTreeMap<&Schedule, Vec<&Row>> {
         self.by(|row| &row.schedule)
     }
@@ -93,9 +92,9 @@ impl Results {
         Estimated::median(values, self.stopping())
     }
 
-    /// Doubts about the times of the rows that did not fail.
-    pub fn doubts(&self) -> Doubts {
-        Doubts::of(self.warnings())
+    /// TimingConcerns about the times of the rows that did not fail.
+    pub fn doubts(&self) -> TimingConcerns {
+        TimingConcerns::of(self.warnings())
     }
 
     /// How many rows did not fail.

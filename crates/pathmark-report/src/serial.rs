@@ -66,7 +66,6 @@ impl<'a> Serial<'a> {
         self.schedules.keys().copied().filter(|schedule| !schedule.is_serial())
     }
 
-    /// The rows of a schedule.
     pub(super) fn rows(&self, schedule: &Schedule) -> &[&'a Row] {
         self.schedules.get(schedule).map_or(&[], Vec::as_slice)
     }

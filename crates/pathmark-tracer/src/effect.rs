@@ -60,7 +60,6 @@ pub trait EffectSet: Send + Sync + 'static {
 pub struct Entry {
     /// Its name in scene files and listings.
     pub name: &'static str,
-    /// A description in one line.
     pub about: &'static str,
     /// Its bit.
     pub effect: Effects,

@@ -79,7 +79,6 @@ pub struct InputError {
     pub field: String,
     /// The value as the user wrote it; empty when there is none.
     pub value: String,
-    /// The problem with the value.
     pub problem: String,
     /// The allowed values; empty when `problem` already names them.
     pub allowed: String,

@@ -50,7 +50,6 @@ pub enum Law {
 /// A parameter of a law.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Parameter {
-    /// Its name.
     pub name: &'static str,
     /// Its value, without a unit, and the bootstrap interval.
     pub estimate: Estimate,
@@ -59,7 +58,6 @@ pub struct Parameter {
 /// A fitted law, with the check of its residuals.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fitted {
-    /// The law.
     pub law: Law,
     /// s; or sigma and kappa.
     pub parameters: Vec<Parameter>,

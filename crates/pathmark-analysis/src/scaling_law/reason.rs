@@ -24,13 +24,9 @@ pub enum Reason {
     /// All repetitions are equal, so they don't show their scatter.
     NoSpread,
     /// The interval of a parameter covers all values that the law allows.
-    Open {
-        /// The parameter.
-        parameter: Parameter,
-    },
+    Open { parameter: Parameter },
     /// The estimate of a parameter lies outside the range that the law allows.
     OutOfRange {
-        /// The parameter.
         parameter: Parameter,
         /// The smallest value allowed.
         low: f64,

@@ -58,7 +58,6 @@ pub struct Guard {
 
 /// One of the two methods.
 pub struct Variant {
-    /// Its name.
     pub name: &'static str,
     /// Its error against the exact answer.
     pub error: fn() -> Measured,

@@ -23,12 +23,10 @@ pub(crate) fn lcg_of_pixel(pixel: u32) -> f64 {
     f64::from(pixel.wrapping_mul(1_664_525).wrapping_add(1_013_904_223)) / 4_294_967_296.0
 }
 
-/// A PCG32 with the pixel as state.
 pub(crate) fn sequential_state(pixel: u32) -> Pcg32 {
     Pcg32::new(u64::from(pixel), 0)
 }
 
-/// A PCG32 with the pixel as stream.
 pub(crate) fn sequential_stream(pixel: u32) -> Pcg32 {
     Pcg32::new(42, u64::from(pixel))
 }

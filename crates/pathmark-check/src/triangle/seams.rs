@@ -85,7 +85,6 @@ fn surfaces() -> Vec<Surface> {
     all
 }
 
-/// A random point of a seam.
 fn point_of(seams: &[[Vec3; 2]], random: &mut Random) -> Vec3 {
     let [a, b] = seams[random.below(seams.len())];
     // In the inner half, away from the other seams at its ends.

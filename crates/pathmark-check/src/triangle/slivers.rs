@@ -121,7 +121,6 @@ fn compare(trials: &mut Trials, what: &str, scenes: u64, mut primitives: impl Fn
     trials.holds(what, "a hundredth of the rays hit, or they prove nothing", told, hits * 100 > rays);
 }
 
-/// A ray at a random point of a triangle.
 fn at_a_point(random: &mut Random, triangles: &[Triangle], origin: Vec3) -> Ray {
     let [a, b, c] = triangles[random.below(triangles.len())].corners;
     let (u, v) = (random.unit(), random.unit());

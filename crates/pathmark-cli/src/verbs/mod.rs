@@ -1,6 +1,5 @@
 //! The verbs: one file for each, and files that several share.
 
-mod axes;
 mod cases;
 mod claims;
 mod diff;
@@ -24,6 +23,7 @@ mod reproduce;
 mod rounds;
 mod run;
 mod selftest;
+mod setting_options;
 mod shard;
 mod shell;
 mod simulate;

@@ -6,9 +6,9 @@
 //! `--estimator all` prices every unbiased estimator. For one estimator, small pilots of the others find out whether
 //! one of them would be faster.
 
-use super::axes::Axes;
 use super::letters::letters;
 use super::run::note_doubts;
+use super::setting_options::SettingOptions;
 use crate::analysis::price::{Law, Price, Renderer};
 use crate::analysis::ranking::groups;
 use crate::analysis::tail::Tail;
@@ -19,7 +19,7 @@ use crate::error::{Error, InputError, Result};
 use crate::experiment::{Paid, Pilot, Piloted, Progress as _, law_of, pay};
 use crate::kernel::Spec;
 use crate::lab::Lab;
-use crate::measure::{Doubts, LARGEST_SEED, LARGEST_SPP, Settings};
+use crate::measure::{LARGEST_SEED, LARGEST_SPP, Settings, TimingConcerns};
 use clap::Args;
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -62,7 +62,7 @@ pub(crate) struct Arguments {
     #[arg(long, alias = "pay")]
     verify: bool,
     #[command(flatten)]
-    axes: Axes,
+    axes: SettingOptions,
     /// Print an array of JSON objects
     #[arg(long)]
     json: bool,
@@ -139,7 +139,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     let is_comparison = asked.spec.estimator == ALL;
     let each = if is_comparison { unbiased(lab, &asked).collect() } else { vec![asked] };
     lab.prepare(each[0].clone())?.remarks().iter().for_each(|remark| console.note(remark));
-    let (mut priced, mut texts, mut doubts) = (Vec::new(), Vec::new(), Doubts::default());
+    let (mut priced, mut texts, mut doubts) = (Vec::new(), Vec::new(), TimingConcerns::default());
     for settings in &each {
         let (piloted, rows) = price(lab, arguments, settings, console)?;
         texts.push(table(settings, arguments, &piloted, &rows));

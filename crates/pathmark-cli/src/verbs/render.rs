@@ -1,6 +1,6 @@
 //! `pathmark render SCENE`: one image.
 
-use super::axes::Axes;
+use super::setting_options::SettingOptions;
 use super::strict::Strict;
 use super::{inspect, ranks, rounds, shard};
 use crate::console::Console;
@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     ranks: ranks::Ranks,
     #[command(flatten)]
-    axes: Axes,
+    axes: SettingOptions,
     /// Scale .png, .ppm and .bmp files so that the brightest channel of the image is 1; the radiance itself does not change
     #[arg(long, help_heading = "Output")]
     auto_exposure: bool,

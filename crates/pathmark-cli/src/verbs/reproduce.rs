@@ -15,7 +15,7 @@ use crate::files::Files;
 use crate::guard_prices::FOLDER;
 use crate::lab::Lab;
 use crate::lock::Sharing;
-use crate::measure::{Doubts, LeftOut, utc_now};
+use crate::measure::{LeftOut, TimingConcerns, utc_now};
 use crate::report::{self, claims};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -104,7 +104,7 @@ struct Total {
     timed_out: usize,
     invalid: u64,
     left_out: LeftOut,
-    doubts: Doubts,
+    doubts: TimingConcerns,
 }
 
 /// Runs all sweeps. Quick sweeps end before an estimate would be useful; for the others, the time left is of all

@@ -11,7 +11,7 @@ use crate::experiment::{
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::Sharing;
-use crate::measure::{Doubts, LeftOut};
+use crate::measure::{LeftOut, TimingConcerns};
 use crate::report::{self, check_figures, figure_of_serial};
 use crate::shell;
 use clap::Args;
@@ -145,7 +145,7 @@ pub(super) fn check_failures(rows: usize, failed: usize, timed_out: usize) -> Re
 }
 
 /// Says how many rows have times in doubt, if there are any.
-pub(super) fn note_doubts(doubts: &Doubts, console: &Console) {
+pub(super) fn note_doubts(doubts: &TimingConcerns, console: &Console) {
     if doubts.is_any() {
         console.note(&format!("{doubts}; `pathmark list warnings` explains each"));
     }

@@ -9,7 +9,7 @@ use crate::experiment::{MESSAGES, Progress, read_calibration};
 use crate::files::{Files, create_folder};
 use crate::lab::Lab;
 use crate::measure::{
-    CalibrationRow, Doubts, ForeignLoad, SERIAL, Settings, Setup, TraceFile, available_threads, calibrate,
+    CalibrationRow, ForeignLoad, SERIAL, Settings, Setup, TimingConcerns, TraceFile, available_threads, calibrate,
 };
 use crate::report::rank_forecasts::{self, RankPlan};
 use crate::report::{Block, Results, forecasts, save};
@@ -290,7 +290,7 @@ fn predict_live(
     trace: &TraceFile,
     contenders: &[Contender],
     console: &Console,
-) -> Result<(Vec<Prediction>, Doubts)> {
+) -> Result<(Vec<Prediction>, TimingConcerns)> {
     let processors = available_threads();
     let base = &trace.header.settings;
     let work_s: f64 = trace.costs_s().iter().sum();
@@ -314,10 +314,10 @@ fn predict_live(
         console.note(&format!(
             "this machine is not predicted: trying all strategies on the jobs of the trace would take {round_s:.0} s"
         ));
-        return Ok((Vec::new(), Doubts::default()));
+        return Ok((Vec::new(), TimingConcerns::default()));
     }
     let rounds = (CHECK_S / round_s).clamp(1.0, 5.0) as u64;
-    let (mut runs, mut doubts) = (Vec::new(), Doubts::default());
+    let (mut runs, mut doubts) = (Vec::new(), TimingConcerns::default());
     console.begin("predicting this machine", rounds * schedules.len() as u64);
     for round in 0..rounds {
         let serial = lab.prepare(Settings { strategy: "serial".to_string(), threads: 1, ..base.clone() })?;

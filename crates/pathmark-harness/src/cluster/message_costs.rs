@@ -34,7 +34,6 @@ const LOOKS: &str = "computes, and looks every ms";
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MessageCosts {
-    /// Number of ranks.
     pub ranks: usize,
     /// Name and version of the MPI library.
     pub mpi: String,
@@ -46,13 +45,10 @@ pub struct MessageCosts {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MessageCost {
-    /// The operation.
     pub operation: String,
     /// The activity of rank 0 meanwhile.
     pub rank_0: String,
-    /// Number of repetitions.
     pub repetitions: u64,
-    /// Median seconds.
     pub median_s: f64,
     /// The distribution-free 95 % interval of the median.
     pub low_s: f64,

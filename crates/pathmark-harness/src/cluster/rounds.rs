@@ -5,7 +5,7 @@
 
 use super::{Cluster, Tally, failed};
 use crate::error::{Error, Result};
-use crate::film::GrowingFilm;
+use crate::film::ProgressiveFilm;
 use crate::lab::RankRule;
 use crate::measure::{Extend, RoundTimes, Rounds, Setup};
 
@@ -59,7 +59,7 @@ impl Cluster {
                 return Ok(());
             }
             let [from, to] = told.map(|samples| u32::try_from(samples).unwrap_or(u32::MAX));
-            self.round(setup, rule, &GrowingFilm::missing_after(from, to), tally)?;
+            self.round(setup, rule, &ProgressiveFilm::missing_after(from, to), tally)?;
         }
     }
 

@@ -9,7 +9,6 @@ use crate::measure::{ImageKey, SETTINGS, ScheduleKey, Setting, Settings, Setup, 
 pub struct Cell {
     /// The settings in one word: the key by which a resumed sweep finds its finished rows.
     pub id: String,
-    /// The settings.
     pub settings: Settings,
     /// The scene as it was when the cell was made.
     pub scene: SceneVersion,
@@ -28,14 +27,12 @@ pub struct Cell {
 pub struct CellPoint {
     /// Its key. For a point of a curve: the key of a cell with so many samples, followed by the name of the curve.
     pub id: String,
-    /// Samples per pixel.
     pub spp: u32,
     /// The image in one word: rows with the same word must have the same checksum.
     pub image: String,
 }
 
 impl CellPoint {
-    /// The file name of its image.
     pub fn image_file(&self) -> String {
         format!("{}.pfm", self.image.replace(['/', ':'], "-"))
     }
@@ -113,7 +110,6 @@ impl Cell {
     }
 }
 
-/// The file name of the trace of a cell's repetition.
 pub fn trace_file(cell: &str, repetition: u32) -> String {
     format!("{}-r{repetition}.csv", cell.replace(['/', ':'], "-"))
 }

@@ -43,7 +43,6 @@ impl Change {
 /// A cell in both measurements.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CellDiff {
-    /// The cell.
     pub cell: String,
     /// Median seconds in the old measurement.
     pub old_s: f64,

@@ -37,11 +37,9 @@ pub const CELL_ABOUT: &str = "One cell of a sweep, read from standard input";
 /// The job of a child process.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CellJob {
-    /// The experiment's name.
     pub experiment: String,
     /// Its rows, in the order of samples per pixel: one, or the points of a curve.
     pub points: Vec<PointJob>,
-    /// The number of the repetition.
     pub repetition: u32,
     /// Position in the sweep.
     pub order: u64,
@@ -65,7 +63,6 @@ pub struct CellJob {
 pub struct PointJob {
     /// The row's key.
     pub cell: String,
-    /// Samples per pixel.
     pub spp: u32,
     /// The path for the image, if it is kept.
     pub image: Option<PathBuf>,

@@ -27,9 +27,7 @@ const REPEATS: f64 = 1e-3;
 /// A count of a cell in both measurements.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct CountDiff {
-    /// The cell.
     pub cell: String,
-    /// The column.
     pub column: &'static str,
     /// The largest count of its repetitions in the old measurement.
     pub old: u64,

@@ -128,7 +128,6 @@ pub struct Definition {
     pub lab: Arc<Lab>,
     /// Heading.
     pub title: String,
-    /// The question.
     pub question: String,
     /// How to read the results.
     #[serde(default)]
@@ -270,7 +269,6 @@ impl Definition {
         Ok(self.scale(profile)?.until.as_ref())
     }
 
-    /// The matrices of a profile.
     pub(super) fn matrices(&self, profile: Profile) -> impl Iterator<Item = &Matrix> {
         self.matrix.iter().filter(move |matrix| matrix.is_for(profile))
     }

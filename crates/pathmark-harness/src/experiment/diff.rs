@@ -6,7 +6,7 @@ use super::cell_diff::{CellDiff, Judge, Pairing, Times};
 use super::run_file::RunFile;
 use super::sides::{Compared, Lost, Side, check_images, sides};
 use crate::error::{InputError, Result};
-use crate::measure::{Doubts, Record};
+use crate::measure::{Record, TimingConcerns};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -25,8 +25,8 @@ pub struct Diff {
     pub sequential: bool,
     /// Whether repetitions had a goal, and the intervals do not allow for that.
     pub stopped_by_times: bool,
-    /// Doubts about all times.
-    pub doubts: Doubts,
+    /// TimingConcerns about all times.
+    pub doubts: TimingConcerns,
 }
 
 /// Parses a share by which a cell may get slower, such as `0.03` or `3%`.
@@ -102,6 +102,6 @@ fn of_experiment(sides: &[Side; 2], [before, after]: &[Cells; 2], judge: &Judge)
         paired: pairing != Pairing::None,
         sequential: pairing == Pairing::Sequential,
         stopped_by_times: pairing == Pairing::None && sides.iter().any(has_goal),
-        doubts: Doubts::of(warnings),
+        doubts: TimingConcerns::of(warnings),
     }
 }

@@ -29,7 +29,6 @@ pub const EXTERNAL: &str = "external";
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct External {
-    /// Its name.
     pub name: String,
     /// The program and its arguments; `{spp}`, `{seed}` and `{out}` must be among them, `{width}`, `{height}` and `{folder}` may be.
     pub command: Vec<String>,

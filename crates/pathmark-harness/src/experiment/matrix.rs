@@ -153,7 +153,7 @@ impl<'a> Product<'a> {
         }
         for value in self.values(axis) {
             let mut settings = settings.clone();
-            if axis.kind != Kind::Fitting || value != FITTING {
+            if axis.kind != Kind::Auto || value != FITTING {
                 axis.set(&mut settings, &value)?;
             }
             match axis.name {

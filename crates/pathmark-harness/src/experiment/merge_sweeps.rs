@@ -57,14 +57,12 @@ impl Part {
     }
 }
 
-/// A merged sweep.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MergedSweep {
     /// The folder from which a report is made.
     pub out: PathBuf,
     /// The experiment.
     pub name: String,
-    /// Number of its rows.
     pub rows: usize,
     /// Parts that are missing, such as `2/4`, or not finished.
     pub missing: Vec<String>,

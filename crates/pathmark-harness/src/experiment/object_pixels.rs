@@ -5,7 +5,6 @@ use crate::image_io::Image;
 use crate::measure::Setup;
 use crate::scene::{AllEffects, Filter, Scene};
 
-/// The index of the object of that name.
 fn index(scene: &Scene, object: &str) -> Result<u32> {
     if let Some((index, _)) = (0..).zip(&scene.objects).find(|(_, own)| own.name == object) {
         return Ok(index);

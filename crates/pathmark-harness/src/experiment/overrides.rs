@@ -86,7 +86,7 @@ fn value_of(axis: &Setting, values: &str) -> Result<Value> {
             Value::Array(vec![Value::Integer(width.into()), Value::Integer(height.into())])
         }
         Kind::Switch => Value::Array(each.map(|value| switch(axis.name, value)).collect::<Result<_>>()?),
-        Kind::Name | Kind::Fitting => Value::Array(each.map(Value::from).collect()),
+        Kind::Name | Kind::Auto => Value::Array(each.map(Value::from).collect()),
         Kind::Workers => {
             let workers = |value: &str| if value == "all" { Ok(value.into()) } else { number(axis.name, value) };
             Value::Array(each.map(workers).collect::<Result<_>>()?)

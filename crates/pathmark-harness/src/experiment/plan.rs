@@ -31,9 +31,7 @@ const BYTES: [u64; 4] = [760, 60, 12, 52];
 pub struct Plan {
     /// The experiment.
     pub name: String,
-    /// Its cells.
     pub cells: usize,
-    /// Its rows.
     pub rows: usize,
     /// Estimated seconds of the references that are neither in an earlier plan nor in the cache.
     pub references_s: f64,

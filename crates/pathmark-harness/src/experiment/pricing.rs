@@ -11,7 +11,7 @@ use crate::analysis::tail::{Tail, tail};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
 use crate::lab::Lab;
-use crate::measure::{Doubts, LARGEST_BYTES, Rounds, Settings};
+use crate::measure::{LARGEST_BYTES, Rounds, Settings, TimingConcerns};
 use crate::sampling::{REFERENCE_SEEDS, is_spread};
 
 /// The first seed of pilots.
@@ -24,7 +24,6 @@ const POINTS: u32 = 5;
 pub struct Pilot {
     /// Samples per pixel of each seed.
     pub spp: u32,
-    /// Number of seeds.
     pub seeds: u32,
 }
 
@@ -35,8 +34,8 @@ pub struct Piloted {
     /// The tail of the pixels' values over seeds. If one value of one pixel makes up much of the variance, the price
     /// depends on whether the pilot met it.
     pub tail: Tail,
-    /// Doubts about the times of its seeds.
-    pub doubts: Doubts,
+    /// TimingConcerns about the times of its seeds.
+    pub doubts: TimingConcerns,
 }
 
 /// Measured time and error of two renders.
@@ -80,7 +79,7 @@ impl Pilot {
         points.reverse();
 
         let mut images: Vec<Vec<Vec<f64>>> = vec![Vec::new(); points.len()];
-        let (mut per_spp, mut doubts) = (Vec::new(), Doubts::default());
+        let (mut per_spp, mut doubts) = (Vec::new(), TimingConcerns::default());
         progress.begin("pilot", u64::from(self.seeds));
         // The first run of a process is slower than the rest.
         lab.prepare(with_seed(settings, fewest, PILOT_SEEDS))?.run(None)?;

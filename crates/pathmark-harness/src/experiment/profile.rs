@@ -42,7 +42,6 @@ impl Definition {
         Profile::ALL.into_iter().filter(|profile| self.table(*profile).is_some())
     }
 
-    /// Whether it has that profile.
     pub fn has(&self, profile: Profile) -> bool {
         self.table(profile).is_some()
     }

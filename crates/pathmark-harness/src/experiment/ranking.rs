@@ -18,7 +18,7 @@ use crate::analysis::ranking::{groups, least_blocks, may_be_least, order_so_far,
 use crate::error::{InputError, Result};
 use crate::input::read_text;
 use crate::lab::Lab;
-use crate::measure::{Doubts, ImageKey, Record, SERIAL};
+use crate::measure::{ImageKey, Record, SERIAL, TimingConcerns};
 use serde::Serialize;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
@@ -33,14 +33,12 @@ pub(super) const MISS: f64 = 0.05;
 pub struct Place {
     /// The schedule: the part of its cells' names after the image.
     pub schedule: String,
-    /// Median seconds.
     pub median_s: f64,
     /// Time relative to the first schedule: the median of the ratios within a repetition; `None` without a common one.
     pub ratio: Option<f64>,
     /// The interval of the ratio; the intervals of all places hold together with 95 % confidence. `None` for the first
     /// place, and with too few repetitions.
     pub interval: Option<Interval>,
-    /// Repetitions.
     pub repetitions: usize,
     /// Numbers of the groups that it belongs to, from 0. Two schedules that share a group cannot be told apart.
     pub groups: Vec<usize>,
@@ -71,8 +69,8 @@ pub struct Ranking {
     pub without_time: Vec<String>,
     /// The fewest repetitions that can tell any two schedules apart.
     pub least_repetitions: u32,
-    /// Doubts about all times.
-    pub doubts: Doubts,
+    /// TimingConcerns about all times.
+    pub doubts: TimingConcerns,
 }
 
 /// Ranks the schedules in the folder of an experiment; with filters, only those that pass them.
@@ -130,7 +128,7 @@ pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Rank
         images: rankings.collect(),
         without_time: failed.difference(&timed).map(|cell| (*cell).to_string()).collect(),
         least_repetitions: least.max().unwrap_or(0),
-        doubts: Doubts::of(rows.iter().filter(|row| row.error.is_empty()).map(|row| row.warnings.as_str())),
+        doubts: TimingConcerns::of(rows.iter().filter(|row| row.error.is_empty()).map(|row| row.warnings.as_str())),
     })
 }
 

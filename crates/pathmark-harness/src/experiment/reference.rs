@@ -26,9 +26,7 @@ pub struct Reference {
     pub scene: String,
     /// The required version of the scene; any version, if `None`.
     pub version: Option<SceneVersion>,
-    /// Estimator.
     pub estimator: String,
-    /// Sampler.
     pub sampler: String,
     /// Columns and rows.
     pub size: [u32; 2],
@@ -46,7 +44,6 @@ pub struct HalfFile {
 }
 
 impl Reference {
-    /// The setup of a half.
     pub(super) fn half(&self, lab: &Lab, half: u32) -> Result<Setup> {
         let setup = lab.prepare(self.half_settings(half))?;
         self.version.as_ref().map_or(Ok(()), |version| version.check(&setup.hash()))?;

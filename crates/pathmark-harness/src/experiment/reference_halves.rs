@@ -6,7 +6,7 @@
 use super::reference::reference_path;
 use super::{Progress, Reference};
 use crate::error::{Error, InputError, Result};
-use crate::film::{Film, GrowingFilm, SAMPLE_BLOCK};
+use crate::film::{Film, ProgressiveFilm, SAMPLE_BLOCK};
 use crate::film_file::{FilmKey, read_film, write_film};
 use crate::lab::Lab;
 use crate::lock::{Lock, Sharing};
@@ -73,7 +73,7 @@ impl<'a> Half<'a> {
         let FilmKey { width, height, spp: done, .. } = self.rounds.film_key();
         for samples in subtrees().rev().filter(|samples| (done + 1..spp).contains(samples)) {
             let parts = self.cached(samples)?.map(|film| vec![(0..samples, film)]);
-            let film = parts.and_then(|parts| GrowingFilm::from_parts(width, height, parts, |_, _| true));
+            let film = parts.and_then(|parts| ProgressiveFilm::from_parts(width, height, parts, |_, _| true));
             if let Some(film) = film {
                 self.rounds.adopt(film, History::default());
                 break;

@@ -8,7 +8,7 @@ use super::sweep::{Summary, Sweep};
 use super::time_limit::Limits;
 use super::{Cell, CellPoint, HalfFile, Progress, Reference};
 use crate::error::Result;
-use crate::measure::{Doubts, LeftOut, Record, Settings};
+use crate::measure::{LeftOut, Record, Settings, TimingConcerns};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::path::PathBuf;
 
@@ -59,7 +59,7 @@ impl<'a> Running<'a> {
             timed_out: 0,
             left_out: LeftOut::of(&done),
             invalid: done.iter().filter_map(|record| record.invalid_samples).sum(),
-            doubts: Doubts::of(done.iter().map(|record| record.warnings.as_str())),
+            doubts: TimingConcerns::of(done.iter().map(|record| record.warnings.as_str())),
         };
         let mut running = Self {
             sweep,
@@ -97,7 +97,7 @@ impl<'a> Running<'a> {
     fn note(&mut self, record: &Record) {
         self.finished.insert((record.cell.clone(), record.repetition));
         if record.error.is_empty() {
-            let is_doubtful = Doubts::may_pass(&record.warnings);
+            let is_doubtful = TimingConcerns::may_pass(&record.warnings);
             self.by_doubt.entry(record.cell.clone()).or_default()[usize::from(is_doubtful)] += 1;
         }
         self.repetition = self.repetition.max(record.repetition + 1);

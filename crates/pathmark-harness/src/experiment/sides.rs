@@ -41,11 +41,9 @@ impl<T> Compared<T> {
 /// A cell whose rows failed in the new measurement.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct FailedCell {
-    /// The cell.
     pub cell: String,
     /// Number of its rows that failed.
     pub failed: usize,
-    /// Number of its rows.
     pub rows: usize,
     /// The error of the first of them.
     pub error: String,

@@ -21,7 +21,7 @@ use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
 use crate::film::Film;
-use crate::measure::{Doubts, LeftOut, Record, Settings};
+use crate::measure::{LeftOut, Record, Settings, TimingConcerns};
 use crate::temporary;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -49,7 +49,7 @@ pub struct Summary {
     /// Rows that were not run, because the machine lacks what they need.
     pub left_out: LeftOut,
     /// Rows whose times are in doubt.
-    pub doubts: Doubts,
+    pub doubts: TimingConcerns,
 }
 
 impl Summary {

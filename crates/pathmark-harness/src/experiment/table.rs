@@ -146,7 +146,7 @@ impl<'de> DeserializeSeed<'de> for Values {
 
     fn deserialize<D: Deserializer<'de>>(self, from: D) -> Result<Self::Value, D::Error> {
         Ok(match self.0.kind {
-            Kind::Name | Kind::Fitting => Vec::deserialize(from)?,
+            Kind::Name | Kind::Auto => Vec::deserialize(from)?,
             Kind::Switch => words(&Vec::<bool>::deserialize(from)?),
             Kind::Count => words(&Vec::<u16>::deserialize(from)?),
             Kind::Samples => words(&Vec::<u32>::deserialize(from)?),

@@ -11,7 +11,6 @@ pub type Named = &'static [(&'static str, &'static str)];
 /// The texts that a program carries.
 #[derive(Debug, Clone, Copy)]
 pub struct Texts {
-    /// The experiments.
     pub experiments: Named,
     /// The claims on the reports.
     pub claims: Named,

@@ -17,7 +17,6 @@ pub(super) struct Timed {
     pub(super) is_shown_only: bool,
 }
 
-/// Schedules by name.
 pub(super) type Schedules = BTreeMap<String, Timed>;
 
 /// Sets of repetitions that are joined step by step (R. E. Tarjan, "Efficiency of a good but not linear set union

@@ -48,7 +48,6 @@ pub fn write_film(path: &Path, key: &FilmKey, film: &Film) -> Result<()> {
     FILE.write(path, key, &[film])
 }
 
-/// Reads a film and its key.
 pub fn read_film(path: &Path) -> Result<(FilmKey, Film)> {
     let (key, films) = FILE.read(path, |key: &FilmKey| (key.width, key.height, 1))?;
     let film = films.into_iter().next().unwrap_or_else(|| Film::new(key.width, key.height));

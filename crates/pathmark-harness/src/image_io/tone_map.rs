@@ -44,7 +44,6 @@ pub fn quantise_image(image: &Image) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Returns the error that names the pixel at `index`, its value and the `problem`.
 pub(super) fn bad_pixel(image: &Image, index: usize, problem: &str) -> Error {
     let (width, [r, g, b]) = (image.width as usize, image.pixels[index]);
     Error::Check(format!("pixel ({}, {}) = ({r}, {g}, {b}) {problem}", index % width, index / width))

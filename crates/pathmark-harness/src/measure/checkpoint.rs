@@ -1,13 +1,13 @@
 //! A render on disk that can continue: `render --checkpoint FILE`.
 //!
-//! Layout: [`crate::film_file::SumFile`], with the subtrees of the film ([`GrowingFilm::parts`]) as images. The header
+//! Layout: [`crate::film_file::SumFile`], with the subtrees of the film ([`ProgressiveFilm::parts`]) as images. The header
 //! identifies the render; a file of any other render is refused, never overwritten. The file is written between rounds,
 //! in one rename, so that a reader finds one round or the next. Two renders cannot write one file: a lock file stands
 //! beside it as long as the render runs.
 
 use super::{History, Position, Rounds};
 use crate::error::{InputError, Result};
-use crate::film::{Film, GrowingFilm, Shard, check_size, sections};
+use crate::film::{Film, ProgressiveFilm, Shard, check_size, sections};
 use crate::film_file::{FilmKey, SumFile};
 use crate::lock::Lock;
 use serde::{Deserialize, Serialize};
@@ -70,12 +70,12 @@ impl Header {
     }
 
     /// Reads a file, and the subtrees of its film.
-    pub(super) fn read(path: &Path) -> Result<(Self, GrowingFilm)> {
+    pub(super) fn read(path: &Path) -> Result<(Self, ProgressiveFilm)> {
         let (header, films): (Self, Vec<Film>) = FILE.read(path, Self::shape)?;
         let parts = sections(&header.samples()).into_iter().zip(films).collect();
         let FilmKey { width, height, spp, .. } = header.film;
         let owns = |x, y| header.part.is_none_or(|part| part.shard.owns(x, y));
-        let film = GrowingFilm::from_parts(width, height, parts, owns).filter(|film| film.spp() == spp);
+        let film = ProgressiveFilm::from_parts(width, height, parts, owns).filter(|film| film.spp() == spp);
         let film = film.ok_or_else(|| refused(path, "does not contain the samples that its header states"))?;
         Ok((header, film))
     }
@@ -94,8 +94,7 @@ pub struct Checkpoint {
 
 /// The state that an earlier process saved.
 pub struct Saved {
-    /// Its film.
-    pub film: GrowingFilm,
+    pub film: ProgressiveFilm,
     /// Its progress.
     pub position: Position,
     /// The counts of the film's paths.

@@ -1,6 +1,5 @@
 //! The columns of `records.csv`, derived from the type of a row.
 
-/// One column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Column {
     /// Its heading.

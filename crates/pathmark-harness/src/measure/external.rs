@@ -13,7 +13,6 @@ use std::time::Instant;
 
 /// The result of an external program.
 pub struct ExternalRun {
-    /// Its image.
     pub image: Image,
     /// Seconds from its start to its end, start-up and writing included.
     pub wall_s: f64,

@@ -64,7 +64,6 @@ fn differing(own: impl Into<Facts>, other: impl Into<Facts>) -> Option<(&'static
     pairs.map(|((name, own), (_, other))| (name, own, other)).find(|(_, own, other)| own != other)
 }
 
-/// The kernel's name.
 const KERNEL: &str = if cfg!(target_os = "linux") { "Linux" } else { std::env::consts::OS };
 
 /// Load averages over 1, 5 and 15 minutes.

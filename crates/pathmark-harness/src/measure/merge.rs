@@ -6,7 +6,7 @@
 
 use super::checkpoint::{Header, Part, difference};
 use crate::error::{InputError, Result};
-use crate::film::{Film, GrowingFilm, Shard, ShardCut};
+use crate::film::{Film, ProgressiveFilm, Shard, ShardCut};
 use crate::film_file::FilmKey;
 use std::path::{Path, PathBuf};
 
@@ -92,7 +92,8 @@ pub fn merge(paths: &[PathBuf], partial: bool) -> Result<Merged> {
         return Err(InputError::new("part", first.path.display().to_string(), problem).allowed(allowed).into());
     }
     let key = FilmKey { spp, ..first.header.film.clone() };
-    let (mut film, mut growing) = (Film::try_new(key.width, key.height)?, GrowingFilm::new(key.width, key.height, 0));
+    let (mut film, mut growing) =
+        (Film::try_new(key.width, key.height)?, ProgressiveFilm::new(key.width, key.height, 0));
     let mut invalid = 0;
     for found in &parts {
         let (header, part) = Header::read(&found.path)?;

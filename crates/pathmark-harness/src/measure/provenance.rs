@@ -11,7 +11,6 @@ const CHECKSUM: &str = "pathmark.checksum";
 /// The film that a picture shows.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Provenance {
-    /// The key of the film.
     pub key: FilmKey,
     /// The film's checksum, if it has one.
     pub checksum: Option<String>,

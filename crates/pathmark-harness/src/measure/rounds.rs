@@ -7,7 +7,7 @@
 use super::run::{RoundTimes, RunTotals, Watch};
 use super::{History, MergedShare, Outcome, Setup};
 use crate::error::{InputError, Result};
-use crate::film::{Film, GrowingFilm, Shard};
+use crate::film::{Film, ProgressiveFilm, Shard};
 use crate::film_file::FilmKey;
 use crate::settings::check_spp;
 use std::ops::Range;
@@ -17,7 +17,7 @@ pub struct Rounds {
     setup: Setup,
     shard: Option<Shard>,
     totals: RunTotals,
-    film: GrowingFilm,
+    film: ProgressiveFilm,
 }
 
 impl Rounds {
@@ -33,13 +33,13 @@ impl Rounds {
         if let Some(shard) = shard {
             shard.check(spec.width, spec.height, spp)?;
         }
-        let film = GrowingFilm::new(spec.width, spec.height, shard.map_or(0, |shard| shard.samples(spp).start));
+        let film = ProgressiveFilm::new(spec.width, spec.height, shard.map_or(0, |shard| shard.samples(spp).start));
         Ok(Self { setup, shard, totals: RunTotals::new(), film })
     }
 
     /// Continues with a film of the same settings, and its counts as far as they are known, instead of the samples so
     /// far.
-    pub fn adopt(&mut self, film: GrowingFilm, history: History) {
+    pub fn adopt(&mut self, film: ProgressiveFilm, history: History) {
         self.film = film;
         self.totals.history = history;
     }
@@ -117,7 +117,7 @@ impl Rounds {
     }
 
     /// The film with the data that further rounds need.
-    pub fn growing(&self) -> &GrowingFilm {
+    pub fn growing(&self) -> &ProgressiveFilm {
         &self.film
     }
 

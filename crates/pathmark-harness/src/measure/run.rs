@@ -1,8 +1,8 @@
 //! A run: jobs handed to a strategy, once or in several rounds, timed and verified.
 
-use super::beside::{PieceClaims, Shared};
 use super::foreign_load::FOREIGN_SHARE;
 use super::history::History;
+use super::hybrid::{PieceClaims, Shared};
 use super::invalid::{InvalidSample, first_invalid};
 use super::ledger::Ledger;
 use super::output::{Delivery, Output};
@@ -42,7 +42,6 @@ pub struct Outcome {
     pub plan: Arc<Plan>,
     /// Which worker ran which job when. The time between rounds is left out.
     pub trace: Trace,
-    /// The counts of each job.
     pub job_counts: Vec<Counts>,
     /// The counts of the film's paths, including those that earlier processes rendered.
     pub counts: Counts,
@@ -64,7 +63,7 @@ pub struct Outcome {
     pub merge_s: f64,
     /// The film's checksum; none if the sampler draws other random numbers in each run.
     pub checksum: Option<String>,
-    /// Doubts about the run.
+    /// TimingConcerns about the run.
     pub warnings: Vec<Warning>,
     /// The kernel's remarks on how it rendered.
     pub remarks: Vec<String>,
@@ -113,7 +112,6 @@ impl Setup {
     }
 }
 
-/// The times of one round.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RoundTimes {
     /// Seconds from handing over the jobs until all were done.
@@ -367,7 +365,6 @@ pub(super) struct Timed {
 pub(super) struct Round<'a> {
     pub(super) plan: &'a Plan,
     pub(super) sections: &'a [Range<u32>],
-    /// By job.
     pub(super) spans: Vec<JobSpan>,
     pub(super) counts: Vec<Counts>,
     /// Workers that had jobs, and those that should have had some.

@@ -37,8 +37,10 @@ pub struct Setup {
 /// The subject of a run.
 #[derive(Clone)]
 enum Subject {
-    /// A scene to render.
-    Scene { scene: Arc<Scene>, choice: Box<RenderOptions> },
+    Scene {
+        scene: Arc<Scene>,
+        choice: Box<RenderOptions>,
+    },
     /// Work that is unrelated to light.
     Workload(Workload),
 }
@@ -253,7 +255,6 @@ impl Setup {
         Ok((Arc::clone(&built.kernel), built.build_s))
     }
 
-    /// Number of jobs.
     pub fn jobs(&self) -> usize {
         self.plan.len()
     }
@@ -334,7 +335,7 @@ impl Setup {
         Error::system("running strategy", self.strategy.name, std::io::Error::other(error))
     }
 
-    /// Doubts about a run of `spp` samples in which `workers_used` of `asked` workers had jobs.
+    /// TimingConcerns about a run of `spp` samples in which `workers_used` of `asked` workers had jobs.
     pub(super) fn warnings(&self, counts: &Counts, spp: u32, asked: usize, workers_used: u32) -> Vec<Warning> {
         let mut warnings = Vec::new();
         if (workers_used as usize) < asked {

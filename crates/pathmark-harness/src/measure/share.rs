@@ -140,7 +140,6 @@ impl Share<'_> {
         self.done.iter().fold(0.0, |sum, job| sum + job.span.duration_s())
     }
 
-    /// Its last `count` jobs.
     pub fn last(&self, count: usize) -> &[DoneJob] {
         &self.done[self.done.len().saturating_sub(count)..]
     }

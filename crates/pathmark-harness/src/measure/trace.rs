@@ -7,14 +7,12 @@ use crate::analysis::balance::{Balance, of_spans};
 pub struct JobSpan {
     /// The worker, numbered in the order in which workers ran their first jobs.
     pub worker: u32,
-    /// Its start.
     pub start_s: f64,
     /// Its end.
     pub stop_s: f64,
 }
 
 impl JobSpan {
-    /// Its duration.
     pub fn duration_s(&self) -> f64 {
         self.stop_s - self.start_s
     }
@@ -29,7 +27,6 @@ impl JobSpan {
 /// The spans of all jobs, in index order.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Trace {
-    /// The spans.
     pub jobs: Vec<JobSpan>,
 }
 

@@ -6,7 +6,7 @@
 //! 0,1,0.000041,0.00193,4096,30211,0,0,16,16,0,16
 //! ```
 
-use super::{Doubts, JobSpan, Outcome, Settings, Setup, Trace};
+use super::{JobSpan, Outcome, Settings, Setup, TimingConcerns, Trace};
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use crate::film::{Bounds, Piece};
@@ -24,13 +24,12 @@ const LIMITS: Limits = Limits { bytes: 1 << 33, line: 1 << 14 };
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TraceHeader {
-    /// The settings.
     pub settings: Settings,
     /// Seconds from handing over the jobs until all were done.
     pub makespan_s: f64,
     /// Threads that ran at least one job.
     pub workers: u32,
-    /// Doubts about the run, as a row has them.
+    /// TimingConcerns about the run, as a row has them.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub warnings: String,
 }
@@ -49,7 +48,6 @@ pub struct TraceRow {
     pub stop_s: f64,
     /// Number of samples.
     pub paths: u64,
-    /// Number of rays.
     pub rays: u64,
     /// First column of its piece.
     pub x0: u32,
@@ -94,7 +92,7 @@ impl TraceFile {
     /// A warning with the doubts about the times when they were measured; `None` if there were none.
     pub fn doubt(&self) -> Option<String> {
         let warnings = &self.header.warnings;
-        Doubts::concern(warnings).then(|| format!("warning: the times of this trace are in doubt: {warnings}"))
+        TimingConcerns::concern(warnings).then(|| format!("warning: the times of this trace are in doubt: {warnings}"))
     }
 
     /// Seconds of each job, in index order.

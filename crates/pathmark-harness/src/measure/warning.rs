@@ -14,12 +14,7 @@ pub enum Warning {
         used: u32,
     },
     /// More workers than processors.
-    Oversubscribed {
-        /// Workers.
-        workers: u32,
-        /// Processors.
-        processors: usize,
-    },
+    Oversubscribed { workers: u32, processors: usize },
     /// Other programs used the processors at the same time.
     ForeignLoad {
         /// Their share of all processors' time.

@@ -8,7 +8,6 @@ use super::{Setting, Settings};
 use std::fmt;
 use std::iter::once;
 
-/// A column of a key.
 pub(super) struct KeyColumn {
     pub(super) name: &'static str,
     /// Its value; `None` if nothing was chosen.

@@ -77,7 +77,6 @@ fn is_unset<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
-/// The name of a strategy on a decomposition.
 pub fn schedule_name<'a>(strategy: &'a str, decomposition: &str) -> &'a str {
     if strategy == "thread-per-job" && decomposition == "rows" { THREAD_PER_ROW } else { strategy }
 }

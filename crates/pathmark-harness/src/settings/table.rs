@@ -14,7 +14,6 @@ use std::sync::LazyLock;
 /// The setting of two numbers.
 const SIZE: &str = "size";
 
-/// One setting.
 #[derive(Clone, Copy)]
 pub struct Setting {
     /// Its name as an option, in an experiment, in a filter and in errors.
@@ -103,7 +102,6 @@ impl Setting {
         once(self.column).chain(self.second_column)
     }
 
-    /// Sets its value from text.
     pub fn set(&self, settings: &mut Settings, text: &str) -> Result<()> {
         match (self.field)(settings).set(text) {
             Some(()) => Ok(()),

@@ -7,19 +7,15 @@ use std::str::FromStr;
 /// The type of a setting's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// A name.
     Name,
     /// A name, or a choice that fits the scene.
-    Fitting,
+    Auto,
     /// Yes or no.
     Switch,
-    /// A number, or none.
     Count,
     /// Samples per pixel.
     Samples,
-    /// A seed.
     Seed,
-    /// Workers.
     Workers,
     /// Columns and rows.
     Size,
@@ -98,7 +94,7 @@ asked!(Option<u16>, Count, |count| count.map(|count| count.to_string()));
 impl Asked for Option<String> {
     type Column = String;
     const COLUMN: &'static str = "String";
-    const KIND: Kind = Kind::Fitting;
+    const KIND: Kind = Kind::Auto;
 
     fn column(&self) -> String {
         self.clone().unwrap_or_default()

@@ -16,7 +16,6 @@ pub struct Observed {
     pub decomposition: String,
     /// The strategy, with its parameter if it has one.
     pub strategy: String,
-    /// Number of workers.
     pub workers: usize,
     /// The measured makespan, in seconds.
     pub makespan_s: f64,
@@ -30,11 +29,8 @@ pub struct Observed {
 pub struct Prediction {
     /// The decomposition of the film.
     pub decomposition: String,
-    /// The strategy.
     pub strategy: String,
-    /// Number of workers.
     pub workers: usize,
-    /// Number of runs.
     pub runs: usize,
     /// Median simulated makespan, in seconds.
     pub predicted_s: f64,

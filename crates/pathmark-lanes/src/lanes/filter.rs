@@ -42,7 +42,6 @@ struct Quick {
     center: Vec3,
     /// r² - |c|², plus the sphere's part of E.
     constant: f64,
-    /// S.
     least: f64,
 }
 

@@ -129,7 +129,6 @@ impl<V: Float> Apart for NextPart<'_, '_, V> {
     }
 }
 
-/// A vector of one lane.
 #[inline(always)]
 pub(super) fn vector<V: Float>(of: &Vec3<V>, lane: usize) -> Vec3 {
     Vec3::new(of.x.lane(lane), of.y.lane(lane), of.z.lane(lane))
@@ -142,7 +141,6 @@ pub(super) fn set_vector<V: Float>(of: &mut Vec3<V>, lane: usize, value: Vec3) {
     of.z.set_lane(lane, value.z);
 }
 
-/// A colour of one lane.
 #[inline(always)]
 pub(super) fn colour<V: Float>(of: &Rgb<V>, lane: usize) -> Rgb {
     Rgb { r: of.r.lane(lane), g: of.g.lane(lane), b: of.b.lane(lane) }

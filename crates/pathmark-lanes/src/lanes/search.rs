@@ -37,7 +37,6 @@ pub(super) fn in_packets(scene: &Scene, rays: &[Start], lanes: usize) -> Vec<f64
     all
 }
 
-/// The rays of one packet.
 #[inline(always)]
 pub(super) fn packet<V: Float>(numbers: &[V::One]) -> Rays<V> {
     let number = |k: usize| V::load(&numbers[k * V::LANES..]);

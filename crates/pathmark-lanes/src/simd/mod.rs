@@ -71,7 +71,6 @@ pub trait Words<M>: Bits {
     /// `self`, but lanes in the mask get the next of the words, in order. There must be as many words as lanes.
     #[must_use]
     fn fill(self, mask: M, from: &[u64]) -> Self;
-    /// The word in a lane.
     fn word(&self, lane: usize) -> u64;
     /// Puts a word into a lane.
     fn set_word(&mut self, lane: usize, word: u64);
@@ -88,13 +87,11 @@ pub trait Words<M>: Bits {
 pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     /// Words of 64 bits, as many as there are numbers.
     type Bits: Words<Self::Mask>;
-    /// The type of one number.
     type One: Number;
     /// One register of the same instruction set in single precision.
     type Single: Float<One = f32>;
     /// One register of these numbers.
     type Register: Float<One = Self::One>;
-    /// Number of lanes.
     const LANES: usize;
 
     /// From at least as many numbers as there are lanes.
@@ -119,7 +116,6 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     }
     /// A number, rounded if need be.
     fn one(value: f64) -> Self::One;
-    /// The number in a lane.
     fn lane(&self, lane: usize) -> f64;
     /// Puts a number, rounded if need be, into a lane.
     fn set_lane(&mut self, lane: usize, value: f64);
@@ -231,7 +227,6 @@ pub trait Apart {
 pub struct Entry {
     /// Its name on the command line, in CSV and TOML.
     pub name: &'static str,
-    /// A description in one line.
     pub about: &'static str,
     set: Set,
     /// Whether this processor has it.
@@ -250,7 +245,6 @@ impl Entry {
 pub struct Level(&'static Entry);
 
 impl Level {
-    /// Its name.
     pub fn name(self) -> &'static str {
         self.0.name
     }
@@ -304,7 +298,6 @@ impl Work for OfLevel {
 pub struct Sizes {
     /// Of all registers together.
     pub lanes: usize,
-    /// Of one register.
     pub register: usize,
     /// Of one register in single precision.
     pub single: usize,

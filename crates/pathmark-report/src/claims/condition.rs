@@ -26,7 +26,6 @@ pub(super) fn text(row: &Columns, column: &str) -> String {
     }
 }
 
-/// The value of a column of numbers.
 pub(super) fn number(row: &Columns, column: &str) -> Option<f64> {
     row.get(column)?.as_f64()
 }

@@ -38,11 +38,9 @@ use serde::Deserialize;
 pub struct Report {
     /// Its letter.
     pub report: String,
-    /// Its title.
     pub title: String,
     /// Its authors and its measurements.
     pub about: String,
-    /// Its claims.
     #[serde(rename = "claim")]
     pub claims: Vec<Claim>,
 }
@@ -109,7 +107,6 @@ pub struct Test {
 }
 
 impl Claim {
-    /// Its evidence.
     pub fn evidence(&self) -> Evidence<'_> {
         match (&self.test, &self.context, &self.missing) {
             (Some(test), _, _) => Evidence::Test(test),
@@ -118,7 +115,6 @@ impl Claim {
         }
     }
 
-    /// The names of the expected verdicts.
     pub(super) fn expected_verdicts(&self) -> impl Iterator<Item = &str> {
         self.expected.split(" or ")
     }

@@ -18,11 +18,8 @@ use std::sync::Arc;
 /// The answer of the results to a claim.
 #[derive(Debug)]
 pub struct Answer<'a> {
-    /// Its report.
     pub report: &'a Report,
-    /// The claim.
     pub claim: &'a Claim,
-    /// The verdict.
     pub verdict: Verdict,
     /// The reason for the verdict, beyond the measured values.
     pub why: String,

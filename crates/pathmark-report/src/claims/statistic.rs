@@ -46,7 +46,6 @@ pub(super) enum Kind {
     Forecast { strategy: String, cores: usize, column: ForecastColumn },
 }
 
-/// A column of a forecast.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum ForecastColumn {

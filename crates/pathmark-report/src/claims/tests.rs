@@ -11,7 +11,6 @@ use std::collections::BTreeMap;
 
 const HEAD: &str = "report = \"X\"\ntitle = \"T\"\nabout = \"Who.\"\n";
 
-/// A claim with this evidence.
 fn claim(evidence: &str) -> String {
     let words = "quote = \"q\"\nplace = \"p\"\nreported = \"r\"\nclaim = \"c\"\nexpected = \"confirmed\"\n";
     format!("{HEAD}[[claim]]\nid = 1\n{words}{evidence}\n")

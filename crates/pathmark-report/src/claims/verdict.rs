@@ -24,7 +24,6 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Its name.
     pub fn name(self) -> &'static str {
         NAMES[self as usize]
     }

@@ -8,7 +8,6 @@ use super::prelude::*;
 pub(super) struct Options {
     /// The axis that is varied: `epsilon`, `filter` or `clamp`.
     axis: Option<Varied>,
-    /// The name of the usual value.
     usual: Option<String>,
 }
 

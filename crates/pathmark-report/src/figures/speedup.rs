@@ -4,7 +4,7 @@ use super::prelude::*;
 use crate::analysis::scaling_law::{Check, Fit, Fitted, Law, fit};
 use crate::analysis::speedup::{Oddity, efficiency, oddity, serial_fraction_within};
 use crate::analysis::superlinear::{Evidence, cause};
-use crate::measure::Doubts;
+use crate::measure::TimingConcerns;
 use crate::schedule::is_of_ranks;
 use crate::serial::Serial;
 use crate::words::hollow;
@@ -124,7 +124,7 @@ impl Speedups<'_> {
         let machine = &self.results.run.machine;
         Evidence {
             at_one_worker: (schedule.key.threads > 1).then(at_one_worker).flatten(),
-            warnings: concerned.filter(|row| Doubts::concern(&row.warnings)).count(),
+            warnings: concerned.filter(|row| TimingConcerns::concern(&row.warnings)).count(),
             processors: Some(machine.processors),
             physical_cores: Some(machine.physical_cores).filter(|cores| *cores > 0),
         }

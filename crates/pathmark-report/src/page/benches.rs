@@ -14,7 +14,6 @@ use std::path::Path;
 
 /// Name of the file's folder within the results.
 const FOLDER: &str = "benches";
-/// The file.
 const FILE: &str = "benches.csv";
 
 const QUESTION: &str =

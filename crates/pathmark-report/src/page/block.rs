@@ -32,11 +32,9 @@ pub enum Block {
         /// Their positions in the picture.
         images: Vec<Placed>,
     },
-    /// A table.
     Table {
         /// File name without its ending.
         stem: &'static str,
-        /// The table.
         table: Table,
     },
 }

@@ -9,7 +9,7 @@ pub(crate) mod table;
 
 use crate::error::Result;
 use crate::experiment::{Chapter, Definition, RunFile};
-use crate::measure::{Doubts, LeftOut, Record};
+use crate::measure::{LeftOut, Record, TimingConcerns};
 use crate::results::Results;
 use crate::words::counted;
 use again::Again;
@@ -69,7 +69,7 @@ pub(crate) struct Section {
     /// Number of rows that were run and did not fail.
     pub(crate) rows: usize,
     /// Rows whose times are in doubt.
-    pub(crate) doubts: Doubts,
+    pub(crate) doubts: TimingConcerns,
     /// Command and machine; `None` for the claims, which are computed anew for each page.
     pub(crate) run: Option<RunFile>,
     pub(crate) blocks: Vec<Block>,

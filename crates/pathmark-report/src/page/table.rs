@@ -23,7 +23,6 @@ impl Digits {
     }
 }
 
-/// A cell of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum TableCell {
     Text(String),
@@ -82,7 +81,6 @@ impl Column {
     }
 }
 
-/// A table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
     /// Its heading.
@@ -107,7 +105,6 @@ impl Table {
         self.length
     }
 
-    /// Whether it has none.
     pub fn is_empty(&self) -> bool {
         self.length == 0
     }

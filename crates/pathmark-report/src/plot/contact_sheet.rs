@@ -76,7 +76,6 @@ pub struct Placed {
     pub caption: Vec<String>,
 }
 
-/// The sheet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactSheet {
     /// The subject, in one line.

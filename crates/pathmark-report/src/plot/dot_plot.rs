@@ -41,7 +41,6 @@ impl Dot {
     }
 }
 
-/// A row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DotRow {
     /// Its name, at its left.

@@ -27,7 +27,6 @@ pub struct Text {
     pub text: String,
     /// Size in pixels per em.
     pub size: f64,
-    /// Its colour.
     pub colour: Colour,
     /// The part of it that is at `at`.
     pub align: Align,
@@ -60,16 +59,13 @@ pub enum Mark {
     Path {
         /// Its points.
         places: Vec<Place>,
-        /// Its colour.
         colour: Colour,
-        /// Its width.
         width: f64,
     },
     /// A filled polygon.
     Area {
         /// Its corners.
         places: Vec<Place>,
-        /// Its colour.
         colour: Colour,
         /// From 0, invisible, to 1, opaque.
         opacity: f64,
@@ -79,19 +75,15 @@ pub enum Mark {
     Rectangle {
         /// Left, top, right and bottom.
         sides: [f64; 4],
-        /// Its colour.
         colour: Colour,
     },
     /// A filled circle.
     Disc {
         /// Its centre.
         at: Place,
-        /// Its radius.
         radius: f64,
-        /// Its colour.
         colour: Colour,
     },
-    /// Text.
     Text(Text),
 }
 
@@ -107,7 +99,6 @@ pub enum PartKind {
 /// Marks of one series, or of its entry in the legend.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
-    /// The name of the series.
     pub series: String,
     /// Data or legend.
     pub kind: PartKind,
@@ -124,7 +115,6 @@ pub struct Note {
     pub series: String,
     /// The value's x, or the name of its row.
     pub of: String,
-    /// The value.
     pub value: f64,
     /// Its low and high end.
     pub interval: Option<(f64, f64)>,

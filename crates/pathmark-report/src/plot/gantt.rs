@@ -41,7 +41,6 @@ const EDGE: f64 = 0.5;
 /// One job in a schedule.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JobBar {
-    /// Its number.
     pub job: usize,
     /// Its worker, from 0.
     pub worker: usize,
@@ -53,7 +52,6 @@ pub struct JobBar {
     pub value: f64,
 }
 
-/// One schedule.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Schedule {
     /// Strategy, threads, seconds and other text above it.

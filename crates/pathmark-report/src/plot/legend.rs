@@ -27,17 +27,9 @@ pub enum Sample {
         line: bool,
     },
     /// A line without points.
-    Line {
-        /// Its colour.
-        colour: Colour,
-        /// Its dashes.
-        dash: Dash,
-        /// Its width.
-        width: f64,
-    },
+    Line { colour: Colour, dash: Dash, width: f64 },
 }
 
-/// One entry of a legend.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LegendEntry {
     sample: Sample,

@@ -28,7 +28,6 @@ pub fn is_plain(value: f64) -> bool {
     value.abs() == 0.0 || (SMALL..LARGE).contains(&value.abs())
 }
 
-/// `value` with a fixed number of decimals.
 pub fn fixed(value: f64, decimals: usize) -> String {
     minus(format!("{value:.decimals$}"))
 }

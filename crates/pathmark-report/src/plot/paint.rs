@@ -94,7 +94,6 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// The drawing as pixels, `scale` per pixel of the drawing.
 pub(super) fn pixels(drawing: &Drawing, scale: f64) -> Result<RgbImage> {
     let (width, height) = device_size(drawing, scale);
     let mut image = RgbImage::new(width, height);

@@ -6,7 +6,6 @@ use super::path::{Path, Rules};
 /// The estimator.
 pub type Bsdf = Path<BsdfRules>;
 
-/// The rules of `bsdf`.
 #[derive(Debug, Clone, Copy)]
 pub struct BsdfRules;
 

@@ -227,7 +227,6 @@ pub trait EstimatorVisitor {
 pub struct Entry {
     /// Its name on the command line, in CSV and TOML.
     pub name: &'static str,
-    /// A description in one line.
     pub about: &'static str,
     /// Samples per pixel must be a multiple of this.
     pub spp_multiple: u32,

@@ -10,7 +10,6 @@ use super::path::{Path, Rules};
 /// The estimator.
 pub type Smallpt = Path<SmallptRules>;
 
-/// The rules of `smallpt`.
 #[derive(Debug, Clone, Copy)]
 pub struct SmallptRules;
 

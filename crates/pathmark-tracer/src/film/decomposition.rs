@@ -11,7 +11,6 @@ use std::ops::Range;
 pub struct Entry {
     /// Its name, the part before the first colon.
     pub name: &'static str,
-    /// A description in one line.
     pub about: &'static str,
     /// An example that can be run as it is, with the default parameters.
     pub example: &'static str,
@@ -153,7 +152,6 @@ impl Decomposition {
         self.cut.block
     }
 
-    /// The size of [`Self::plan`].
     pub fn plan_size(&self, width: u32, height: u32, samples: &Range<u32>) -> PlanSize {
         let parts = self.parts(samples);
         let tiles = self.cut.columns.count(width) * self.cut.rows.count(height);

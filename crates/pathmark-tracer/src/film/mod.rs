@@ -4,11 +4,11 @@
 
 mod assembly;
 mod decomposition;
-mod growth;
 mod image;
 mod noise;
 mod order;
 mod plan;
+mod progressive;
 mod sample_grid;
 mod shard;
 mod sum;
@@ -17,11 +17,11 @@ mod whole;
 
 pub use assembly::Assembly;
 pub use decomposition::{DECOMPOSITIONS, Decomposition, Entry};
-pub use growth::{GrowingFilm, Sections, sections};
 pub use image::Image;
 pub use noise::{FEWEST_PIXELS, Noise};
 pub use order::TileOrder;
 pub use plan::{Bounds, Piece, Plan, PlanSize};
+pub use progressive::{ProgressiveFilm, Sections, sections};
 pub use sample_grid::SampleGrid;
 pub use shard::{Shard, ShardCut};
 pub use sum::{PixelSum, SAMPLE_BLOCK, SampleSum};

@@ -18,7 +18,6 @@ pub enum TileOrder {
     Cost,
 }
 
-/// The orders by name.
 pub(super) const ORDERS: [(&str, TileOrder); 4] = [
     ("scanline", TileOrder::Scanline),
     ("hilbert", TileOrder::Hilbert),

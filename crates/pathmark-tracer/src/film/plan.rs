@@ -47,7 +47,6 @@ pub struct Piece {
 /// The size of a plan, which is known before the plan is made: it may be too large for any memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PlanSize {
-    /// Number of pieces.
     pub pieces: u64,
     /// Pixels of all pieces together. A pixel counts once for each piece that has samples of it.
     pub pixels: u64,
@@ -115,7 +114,6 @@ impl Plan {
         self.pieces.extend_from_slice(&later.pieces);
     }
 
-    /// The pieces.
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }

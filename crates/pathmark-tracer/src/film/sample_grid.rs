@@ -69,7 +69,6 @@ impl SampleGrid {
             .sum()
     }
 
-    /// The size of [`Self::plan`].
     pub fn plan_size(&self, decomposition: &Decomposition) -> PlanSize {
         let whole = decomposition.plan(self.width, self.height, &(0..1));
         let size = |Piece { bounds, samples }: Piece| {

@@ -20,7 +20,6 @@ use std::sync::Arc;
 /// The tables from which names are chosen.
 #[derive(Clone, Copy)]
 pub struct Tables<'a> {
-    /// The kernels.
     pub kernels: &'a [KernelEntry],
     /// The estimators that a program added to the built-in ones.
     pub estimators: &'a [CustomEstimator],

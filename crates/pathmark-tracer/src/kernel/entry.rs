@@ -13,7 +13,6 @@ use std::sync::Arc;
 pub struct KernelEntry {
     /// Its name on the command line, in CSV and TOML.
     pub name: &'static str,
-    /// A description in one line.
     pub about: &'static str,
     /// Whether a text names the kernel, if it takes more than its name, such as a device.
     pub is_named: Option<fn(&str) -> bool>,
@@ -43,7 +42,6 @@ impl KernelEntry {
 /// A request for a kernel: the settings that decide whether it can render an image.
 #[derive(Clone, Copy)]
 pub struct Request<'a> {
-    /// The scene.
     pub scene: &'a Scene,
     /// The settings by name.
     pub spec: &'a Spec,

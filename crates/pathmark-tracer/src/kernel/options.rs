@@ -109,12 +109,10 @@ impl RenderOptions {
         self.seed
     }
 
-    /// The estimator.
     pub fn estimator(&self) -> &EstimatorEntry {
         &self.estimator
     }
 
-    /// The sampler.
     pub fn sampler(&self) -> &'static SamplerEntry {
         self.sampler
     }
@@ -130,7 +128,6 @@ impl RenderOptions {
         scene.hierarchy_by(self.accelerator())
     }
 
-    /// The clamp, if any.
     pub fn clamp(&self) -> Option<Clamp> {
         self.clamp
     }
@@ -221,7 +218,6 @@ impl RenderOptions {
         self.profile.name
     }
 
-    /// The effects of the profile.
     pub fn profile_effects(&self) -> Effects {
         self.profile.effects
     }
@@ -232,7 +228,6 @@ impl RenderOptions {
         self.plan.effects().unwrap_or(self.profile.name)
     }
 
-    /// Name of the accelerator.
     pub fn accelerator(&self) -> &'static str {
         self.accelerator.name
     }

@@ -41,7 +41,6 @@ pub trait Kernel: Send + Sync {
     /// Renders the samples of the piece into the buffer, which has the piece's columns and at least its rows.
     fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts;
 
-    /// Renders pieces, each into its buffer, and returns the counts of each.
     fn render_all(&self, pieces: &[&Piece], out: &mut [TileBuffer]) -> Vec<Counts> {
         pieces.iter().zip(out).map(|(piece, out)| self.render(piece, out)).collect()
     }

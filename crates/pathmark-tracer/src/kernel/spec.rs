@@ -12,11 +12,8 @@ pub struct Spec {
     pub height: u32,
     /// Seed of the image.
     pub seed: u64,
-    /// Estimator by name.
     pub estimator: String,
-    /// Sampler by name.
     pub sampler: String,
-    /// Kernel by name.
     pub kernel: String,
     /// Instruction set of lanes by name; the fastest of this processor if `None`.
     #[serde(default)]

@@ -45,7 +45,6 @@ impl Ggx {
         (1e-4..=1.0).contains(&alpha).then_some(Self { alpha })
     }
 
-    /// α.
     pub fn alpha(self) -> f64 {
         self.alpha
     }

@@ -9,7 +9,6 @@ use crate::input::albedo;
 use crate::math::{Rgb, Vec3, reflect};
 use serde::Deserialize;
 
-/// A mirror.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Mirror {

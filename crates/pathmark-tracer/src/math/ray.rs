@@ -7,7 +7,6 @@ use super::{Real, Vec3};
 pub struct Ray<T = f64> {
     /// Its start.
     pub origin: Vec3<T>,
-    /// Its direction.
     pub direction: Vec3<T>,
 }
 

@@ -49,7 +49,6 @@ impl<T: Real> Vec3<T> {
         Self::new(self.y * b.z - self.z * b.y, self.z * b.x - self.x * b.z, self.x * b.y - self.y * b.x)
     }
 
-    /// `self * factor + addend`.
     #[inline(always)]
     #[must_use]
     pub fn times_plus(self, factor: T, addend: Self) -> Self {

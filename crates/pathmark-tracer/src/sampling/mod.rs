@@ -59,7 +59,6 @@ pub enum Purpose {
     Medium = 4,
     /// The point on a light, for next-event estimation.
     Light = 5,
-    /// The choice of that light.
     LightChoice = 6,
 }
 
@@ -72,13 +71,11 @@ impl Purpose {
 /// The place where a pair of random numbers is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Address {
-    /// The sample.
     pub key: SampleKey,
     /// The index of the path's vertex; the camera's is 0.
     pub bounce: u16,
     /// 0 for the main path; each part of a split path has its own number. At the camera: the number of the camera ray.
     pub branch: u16,
-    /// The purpose.
     pub purpose: Purpose,
 }
 
@@ -104,7 +101,6 @@ impl Sampler for Box<dyn Sampler> {
 pub struct Entry {
     /// Its name on the command line, in CSV and TOML.
     pub name: &'static str,
-    /// A description in one line.
     pub about: &'static str,
     /// Whether a number depends on its address alone. Images of other samplers have no checksum.
     pub deterministic: bool,

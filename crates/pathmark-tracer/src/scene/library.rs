@@ -16,7 +16,6 @@ pub struct Library {
 }
 
 impl Library {
-    /// Adds a scene.
     pub fn add(&mut self, scene: CustomScene) {
         self.own.push(scene);
     }

@@ -71,7 +71,6 @@ impl Object {
 /// The primitive on which a ray starts, and the side. Such a ray needs no epsilon to miss its own start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SurfaceOrigin {
-    /// Number of the primitive.
     pub primitive: u32,
     /// Whether the ray leaves to its inside.
     pub inside: bool,
@@ -82,7 +81,6 @@ pub struct SurfaceOrigin {
 pub struct Hit {
     /// Distance, in multiples of the direction's length.
     pub t: f64,
-    /// Number of the primitive.
     pub primitive: u32,
     /// Index of the object that it belongs to.
     pub object: u32,
@@ -111,7 +109,6 @@ pub const USUAL_ESTIMATOR: &str = "mis";
 pub struct Scene {
     /// Its name: the file's stem, and a generator's number.
     pub name: String,
-    /// A description in one line.
     pub about: String,
     /// SHA-256 of everything that defines it, shortened to 16 hexadecimal digits.
     pub hash: String,
@@ -123,11 +120,9 @@ pub struct Scene {
     pub(in crate::scene) near: Option<[String; 2]>,
     /// The estimator that the scene names. [`Scene::estimator`] also covers scenes that name none.
     pub default_estimator: Option<String>,
-    /// The camera.
     pub camera: Camera,
     /// The surfaces, stored apart from the objects, so that the search for the nearest one reads nothing else.
     pub primitives: Primitives,
-    /// The objects.
     pub objects: Vec<Object>,
     /// The object's index for each primitive.
     pub owners: Vec<u32>,

@@ -11,11 +11,9 @@ use crate::input::{length, point, radiance};
 use crate::math::{Rgb, Vec3};
 use serde::{Deserialize, Deserializer};
 
-/// A point light.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PointLight {
-    /// Its position.
     #[serde(deserialize_with = "point")]
     pub position: Vec3,
     /// Radiant intensity, in W per steradian.

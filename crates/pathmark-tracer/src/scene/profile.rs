@@ -20,9 +20,7 @@ pub trait ProfileVisitor {
 pub struct ProfileEntry {
     /// Its name on the command line and in records.
     pub name: &'static str,
-    /// A description in one line.
     pub about: &'static str,
-    /// The effects in it.
     pub effects: Effects,
 }
 

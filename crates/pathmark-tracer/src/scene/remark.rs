@@ -52,7 +52,6 @@ impl Scene {
         })
     }
 
-    /// Returns remarks on its light.
     pub(super) fn remarks_on_light(&self) -> Vec<String> {
         let is_open = self.background.is_some();
         let has_background = self.background.is_some_and(|radiance| !radiance.is_black());

@@ -12,7 +12,6 @@ pub const SCENES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/scenes.r
 /// A scene that a user's program provides.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CustomScene {
-    /// Its name.
     pub name: String,
     /// Its definition in TOML.
     pub text: String,
@@ -26,7 +25,6 @@ const MESHES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/meshes.rs"))
 pub(super) enum Folder {
     /// In the binary.
     Embedded,
-    /// On disk.
     Disk(PathBuf),
 }
 

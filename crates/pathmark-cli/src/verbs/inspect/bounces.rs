@@ -9,7 +9,7 @@ use crate::files::Files;
 use crate::kernel::{Inspector, LightByBounce, Spec};
 use crate::lab::Lab;
 use crate::plot::number::short;
-use crate::verbs::axes::{Samples, no_paths};
+use crate::verbs::setting_options::{Samples, no_paths};
 use clap::Args;
 use serde_json::{Value, json};
 use std::fmt::Write;

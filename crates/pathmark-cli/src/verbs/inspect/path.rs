@@ -10,7 +10,7 @@ use crate::plot::number;
 use crate::scene::Scene;
 use crate::shell;
 use crate::simd::Precision;
-use crate::verbs::axes::{What, no_paths};
+use crate::verbs::setting_options::{What, no_paths};
 use clap::Args;
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -263,7 +263,7 @@ mod tests {
             let mut settings = base();
             let value = match setting.kind {
                 Kind::Size => "9x7",
-                Kind::Name | Kind::Fitting => "other",
+                Kind::Name | Kind::Auto => "other",
                 _ => "3",
             };
             setting.set(&mut settings, value).unwrap();

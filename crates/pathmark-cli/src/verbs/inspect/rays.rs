@@ -14,7 +14,7 @@ use crate::math::Vec3;
 use crate::measure::{Settings, Setup};
 use crate::plot::number::short;
 use crate::scene::Scene;
-use crate::verbs::axes::{Samples, no_paths};
+use crate::verbs::setting_options::{Samples, no_paths};
 use clap::{Args, value_parser};
 use serde_json::json;
 use std::io::{self, Write};

@@ -39,7 +39,6 @@ pub(super) struct Delivery {
 pub struct Entry {
     /// Its name on the command line, in CSV and TOML.
     pub name: &'static str,
-    /// Its description, in one line.
     pub about: &'static str,
     pub(super) new: fn(Delivery) -> Result<Box<dyn Output>>,
 }

@@ -16,14 +16,12 @@ pub(super) struct Child {
 /// The contents of a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Content {
-    /// The number of a node.
     Node(u32),
     /// Consecutive primitives in the order of the leaves: at most as many as a node has children, unless a leaf of the
     /// binary tree holds more.
     Primitives {
         /// The place of the first one.
         first: u32,
-        /// Their number.
         count: u32,
     },
 }

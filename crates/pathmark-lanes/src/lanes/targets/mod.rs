@@ -65,7 +65,6 @@ pub(super) struct Aims<V: Float> {
 /// Start of a ray or an aim.
 #[derive(Clone, Copy)]
 pub(super) struct Start<V: Float> {
-    /// The point.
     pub(super) point: Vec3<V>,
     /// The primitive that it is on; -1 if none.
     pub(super) primitive: V,
@@ -76,7 +75,6 @@ pub(super) struct Start<V: Float> {
 /// Intersection points of rays.
 #[derive(Clone, Copy)]
 pub(super) struct Met<V> {
-    /// The primitive.
     pub(super) primitive: V,
     /// Its distance along the ray.
     pub(super) t: V,
@@ -86,7 +84,6 @@ pub(super) struct Met<V> {
 
 /// A chosen light for each lane.
 struct Chosen<V: Float> {
-    /// Its number.
     light: V,
     primitive: V,
     chance: V,

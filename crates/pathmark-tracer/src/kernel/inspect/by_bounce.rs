@@ -30,7 +30,6 @@ impl BounceRow {
 pub struct LightByBounce {
     /// One row for each number of bounces, from 0.
     pub rows: Vec<BounceRow>,
-    /// Samples.
     pub samples: u64,
     /// Rays traced, shadow rays included.
     pub rays: u64,

@@ -106,7 +106,6 @@ impl Entry {
         }
     }
 
-    /// A description in one line.
     pub fn about(&self) -> &'static str {
         self.workload().about()
     }

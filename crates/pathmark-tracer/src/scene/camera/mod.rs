@@ -36,7 +36,6 @@ pub struct Camera {
 /// A thin lens.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lens {
-    /// Its radius.
     pub radius: f64,
     /// Distance of the plane in focus, along the view direction.
     pub focus: f64,
@@ -59,7 +58,6 @@ pub struct FilterEntry {
     pub name: &'static str,
     /// Its distribution of samples, in one line.
     pub about: &'static str,
-    /// The filter.
     pub filter: Filter,
 }
 
@@ -75,7 +73,6 @@ pub const FILTERS: &[FilterEntry] = &[
 ];
 
 impl Filter {
-    /// Its name.
     pub fn name(self) -> &'static str {
         FILTERS.iter().find(|entry| entry.filter == self).map_or("", |entry| entry.name)
     }
@@ -116,7 +113,6 @@ cameras! {
 /// A camera set up for an image size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
-    /// The camera.
     pub camera: Camera,
     /// The pixel filter.
     pub filter: Filter,

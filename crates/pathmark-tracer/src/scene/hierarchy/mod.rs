@@ -21,7 +21,6 @@ pub use build::DEEPEST;
 /// Boxes and primitives that rays were tested against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Tests {
-    /// Boxes.
     pub boxes: u64,
     /// Primitives in boxes.
     pub primitives: u64,
@@ -74,7 +73,6 @@ type Build = fn(Vec<Item>) -> Option<Hierarchy>;
 pub struct Entry {
     /// Its name on the command line, in CSV and TOML.
     pub name: &'static str,
-    /// A description in one line.
     pub about: &'static str,
     build: Option<Build>,
 }

@@ -42,7 +42,6 @@ trait Target {
     fn area(&self) -> f64;
 }
 
-/// Any target.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AnyTarget {
     /// A sphere, or its cap that paths can reach.

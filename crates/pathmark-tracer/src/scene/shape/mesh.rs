@@ -34,7 +34,6 @@ const fn largest() -> u32 {
 pub(in crate::scene) struct Mesh {
     /// The file, in the scene's folder.
     file: String,
-    /// The object in it; all objects if `None`.
     object: Option<String>,
     /// The file's size limit in MiB.
     #[serde(default = "largest")]

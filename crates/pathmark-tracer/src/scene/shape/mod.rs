@@ -220,7 +220,6 @@ macro_rules! shapes {
         }
 
         impl AnyShape {
-            /// Adds its primitives.
             pub(super) fn add_to(self, primitives: &mut Primitives, files: &mut Files<'_>) -> Result<()> {
                 match self { $(Self::$Type(shape) => shape.add_to(primitives, files)),* }
             }

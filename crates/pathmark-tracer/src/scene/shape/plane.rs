@@ -9,11 +9,9 @@ use crate::input::{direction, point};
 use crate::math::{Ray, Vec3, plane_root};
 use serde::Deserialize;
 
-/// A plane.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Plane {
-    /// Any point of it.
     #[serde(deserialize_with = "point")]
     pub point: Vec3,
     /// Its normal; reading normalises it.

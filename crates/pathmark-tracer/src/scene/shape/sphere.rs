@@ -16,7 +16,6 @@ pub struct Sphere {
     /// Its centre.
     #[serde(deserialize_with = "point")]
     pub center: Vec3,
-    /// Its radius.
     #[serde(deserialize_with = "length")]
     pub radius: f64,
 }

@@ -13,7 +13,6 @@ use serde::{Deserialize, Deserializer};
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Triangle {
-    /// Its corners.
     #[serde(deserialize_with = "corners")]
     pub corners: [Vec3; 3],
 }

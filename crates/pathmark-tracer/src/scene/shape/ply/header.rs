@@ -11,7 +11,6 @@ pub(super) enum Encoding {
     BigEndian,
 }
 
-/// The type of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Type {
     I8,
@@ -41,7 +40,6 @@ impl Type {
         TYPES.iter().find(|(short, long, _)| [*short, *long].contains(&name)).map(|entry| entry.2)
     }
 
-    /// Its name.
     pub(super) fn name(self) -> &'static str {
         TYPES.iter().find(|entry| entry.2 == self).map_or("", |entry| entry.0)
     }
@@ -142,7 +140,6 @@ const COORDINATES: [&str; 3] = ["x", "y", "z"];
 /// The names of the list of a face's corners.
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
-/// A header.
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,

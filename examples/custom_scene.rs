@@ -1,6 +1,6 @@
 //! A custom scene, from text and code, rendered by a program without the command line.
 //!
-//! `cargo run --release --example own_scene`
+//! `cargo run --release --example custom_scene`
 
 use pathmark::error::Result;
 use pathmark::kernel::Spec;

@@ -1,6 +1,6 @@
 //! A custom workload beside the path tracer: the lengths of the Collatz sequences of many numbers.
 //!
-//! `cargo run --release --example own_workload -- render collatz --size 100x100 --strategy rayon -o collatz.png`
+//! `cargo run --release --example custom_workload -- render collatz --size 100x100 --strategy rayon -o collatz.png`
 //!
 //! The whole command line works with it: `list workloads` shows it, and `render --trace`, `simulate` and experiments
 //! take it in place of a scene's name.

@@ -21,7 +21,7 @@ pub(super) type What = Options<true>;
 
 /// The three axes: *what*, *pieces*, *who*.
 #[derive(Args)]
-pub(super) struct Axes {
+pub(super) struct SettingOptions {
     #[command(flatten)]
     what: What,
     #[command(flatten)]
@@ -70,7 +70,7 @@ fn parser(axis: &Setting) -> ValueParser {
         Kind::Samples => value_parser!(u32).into(),
         Kind::Seed => value_parser!(u64).into(),
         Kind::Workers => value_parser!(usize).into(),
-        Kind::Name | Kind::Fitting | Kind::Size => ValueParser::string(),
+        Kind::Name | Kind::Auto | Kind::Size => ValueParser::string(),
     }
 }
 
@@ -187,7 +187,7 @@ impl What {
     }
 }
 
-impl Axes {
+impl SettingOptions {
     /// The settings for a scene, samples and a seed. Refuses other pieces for a strategy whose name gives its pieces.
     pub(super) fn settings(&self, lab: &Lab, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
         let mut settings = self.what.settings(lab, scene, spp, seed)?;
@@ -211,7 +211,7 @@ mod tests {
 
     #[test]
     fn every_setting_with_a_help_is_an_option_with_that_help() {
-        let options = Axes::augment_args(Command::new("render"));
+        let options = SettingOptions::augment_args(Command::new("render"));
         for setting in SETTINGS.iter().filter(|setting| !setting.about.is_empty()) {
             let option =
                 options.get_arguments().find(|option| option.get_long() == Some(setting.name)).expect(setting.name);

@@ -1,7 +1,7 @@
 //! A custom thread pool beside Pathmark's: `paralight` with fixed ranges, which gives each thread a block of the jobs.
 //!
-//! `cargo run --release --example own_pool -- render cornell --strategy paralight-fixed --threads 2` renders with it,
-//! `-- run thread-scaling` compares it, and `cargo test --example own_pool` says whether it keeps the contract.
+//! `cargo run --release --example custom_pool -- render cornell --strategy paralight-fixed --threads 2` renders with it,
+//! `-- run thread-scaling` compares it, and `cargo test --example custom_pool` says whether it keeps the contract.
 
 use std::iter::StepBy;
 use std::ops::Range;

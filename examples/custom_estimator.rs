@@ -1,7 +1,7 @@
 //! A custom estimator: ambient occlusion, which tests for every visible point how much of the hemisphere above it is
 //! free.
 //!
-//! `cargo run --release --example own_estimator -- render cornell --estimator occlusion --spp 64 -o occlusion.png`
+//! `cargo run --release --example custom_estimator -- render cornell --estimator occlusion --spp 64 -o occlusion.png`
 
 use pathmark::Lab;
 use pathmark::effect::EffectSet;

@@ -70,7 +70,7 @@ impl Sections {
 
 /// A film that can be continued with more samples.
 #[derive(Debug, Clone, PartialEq)]
-pub struct GrowingFilm {
+pub struct ProgressiveFilm {
     width: u32,
     height: u32,
     samples: Range<u32>,
@@ -78,14 +78,14 @@ pub struct GrowingFilm {
     parts: Vec<(Range<u32>, Film)>,
 }
 
-impl GrowingFilm {
+impl ProgressiveFilm {
     /// Creates a film without samples. Its first sample will have the index `start`, a multiple of [`SAMPLE_BLOCK`].
     pub fn new(width: u32, height: u32, start: u32) -> Self {
         debug_assert!(start.is_multiple_of(SAMPLE_BLOCK));
         Self { width, height, samples: start..start, parts: Vec::new() }
     }
 
-    /// Creates a film from parts in the form that [`GrowingFilm::parts`] returns; `None` if they lack that form. `owns`
+    /// Creates a film from parts in the form that [`ProgressiveFilm::parts`] returns; `None` if they lack that form. `owns`
     /// tells by column and row whether a pixel has samples.
     pub fn from_parts(
         width: u32,
@@ -182,7 +182,7 @@ mod tests {
         assembly.finish()
     }
 
-    fn extend(film: &mut GrowingFilm, spp: u32) {
+    fn extend(film: &mut ProgressiveFilm, spp: u32) {
         let missing = film.missing(spp);
         let mut sections = Sections::new(1, 1, &missing).unwrap();
         // Backwards, because pieces may come in any order.
@@ -218,13 +218,13 @@ mod tests {
         for spp in 1..=140 {
             let expected = rendered(0..spp);
             for first in 1..=spp {
-                let mut film = GrowingFilm::new(1, 1, 0);
+                let mut film = ProgressiveFilm::new(1, 1, 0);
                 extend(&mut film, first);
                 assert_eq!((film.film(), film.spp()), (rendered(0..first), first));
                 extend(&mut film, first.midpoint(spp));
                 extend(&mut film, spp);
                 assert_eq!((film.film(), film.spp()), (expected.clone(), spp), "{first} of {spp}");
-                let again = GrowingFilm::from_parts(1, 1, film.parts().to_vec(), |_, _| true).unwrap();
+                let again = ProgressiveFilm::from_parts(1, 1, film.parts().to_vec(), |_, _| true).unwrap();
                 assert_eq!(again, film);
             }
         }
@@ -236,9 +236,9 @@ mod tests {
         for spp in [33, 64, 100, 160, 200] {
             for cut in (0..spp).step_by(16) {
                 for second in (cut..spp).step_by(16) {
-                    let mut whole = GrowingFilm::new(1, 1, 0);
+                    let mut whole = ProgressiveFilm::new(1, 1, 0);
                     for range in [0..cut, cut..second, second..spp] {
-                        let mut film = GrowingFilm::new(1, 1, range.start);
+                        let mut film = ProgressiveFilm::new(1, 1, range.start);
                         extend(&mut film, range.start.midpoint(range.end));
                         extend(&mut film, range.end);
                         let found: Vec<_> = film.parts().iter().map(|(samples, _)| samples.clone()).collect();
@@ -253,16 +253,16 @@ mod tests {
 
     #[test]
     fn a_film_does_not_shrink_and_parts_that_are_no_subtrees_are_refused() {
-        let mut film = GrowingFilm::new(1, 1, 0);
+        let mut film = ProgressiveFilm::new(1, 1, 0);
         assert_eq!(film.film(), Film::new(1, 1));
         extend(&mut film, 100);
         assert!(film.missing(100).is_empty() && film.missing(3).is_empty());
-        let refused = |parts| assert!(GrowingFilm::from_parts(1, 1, parts, |_, _| true).is_none());
+        let refused = |parts| assert!(ProgressiveFilm::from_parts(1, 1, parts, |_, _| true).is_none());
         refused(vec![(0..48, rendered(0..48))]);
         refused(vec![(0..16, rendered(0..16)), (32..64, rendered(32..64))]);
         refused(vec![(8..16, rendered(8..16))]);
         refused(vec![(0..16, rendered(0..32))]);
         refused(film.parts().iter().rev().cloned().collect());
-        assert!(GrowingFilm::from_parts(2, 1, film.parts().to_vec(), |_, _| true).is_none());
+        assert!(ProgressiveFilm::from_parts(2, 1, film.parts().to_vec(), |_, _| true).is_none());
     }
 }

@@ -9,14 +9,14 @@ const TOO_SHORT: &str = "too-short";
 
 /// The number of rows, and of those whose times are in doubt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Doubts {
+pub struct TimingConcerns {
     rows: usize,
     doubted: usize,
     /// Number of rows with each reason; a row may have several.
     by_reason: [usize; REASONS.len()],
 }
 
-impl Doubts {
+impl TimingConcerns {
     /// The doubts about some rows, given the column `warnings` of each.
     pub fn of<'a>(rows: impl IntoIterator<Item = &'a str>) -> Self {
         let mut doubts = Self::default();
@@ -68,7 +68,7 @@ impl Doubts {
     }
 }
 
-impl fmt::Display for Doubts {
+impl fmt::Display for TimingConcerns {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { rows, doubted, by_reason } = self;
         let reasons = by_reason.iter().zip(REASONS).filter(|(count, _)| **count > 0);
@@ -86,15 +86,19 @@ mod tests {
 
     #[test]
     fn rows_are_counted_once_and_reasons_each() {
-        let mut doubts = Doubts::of(["", "drift(+30 %);slowed(+20 % CPU)", "biased"]);
+        let mut doubts = TimingConcerns::of(["", "drift(+30 %);slowed(+20 % CPU)", "biased"]);
         assert_eq!(doubts.to_string(), "1 of 3 rows has a time in doubt (1 slowed, 1 drift)");
         assert!(doubts.is_any() && doubts.is_high());
-        doubts.merge(&Doubts::of(vec![""; 8]));
+        doubts.merge(&TimingConcerns::of(vec![""; 8]));
         assert_eq!((doubts.is_any(), doubts.is_high()), (true, false));
         doubts.add("too-short");
         assert_eq!(doubts.to_string(), "2 of 12 rows have times in doubt (1 slowed, 1 drift, 1 too-short)");
-        assert!(Doubts::may_pass("too-short;drift(+30 %)") && !Doubts::may_pass("too-short") && !Doubts::may_pass(""));
-        assert!(doubts.is_high() && !Doubts::of(["biased"]).is_any() && !Doubts::default().is_high());
+        assert!(
+            TimingConcerns::may_pass("too-short;drift(+30 %)")
+                && !TimingConcerns::may_pass("too-short")
+                && !TimingConcerns::may_pass("")
+        );
+        assert!(doubts.is_high() && !TimingConcerns::of(["biased"]).is_any() && !TimingConcerns::default().is_high());
     }
 
     #[test]
