@@ -92,7 +92,7 @@ impl Results {
         Estimated::median(values, self.stopping())
     }
 
-    /// TimingConcerns about the times of the rows that did not fail.
+    /// Doubts about the times of the rows that did not fail.
     pub fn doubts(&self) -> TimingConcerns {
         TimingConcerns::of(self.warnings())
     }

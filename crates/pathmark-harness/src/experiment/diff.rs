@@ -25,7 +25,7 @@ pub struct Diff {
     pub sequential: bool,
     /// Whether repetitions had a goal, and the intervals do not allow for that.
     pub stopped_by_times: bool,
-    /// TimingConcerns about all times.
+    /// Doubts about all times.
     pub doubts: TimingConcerns,
 }
 

@@ -34,7 +34,7 @@ pub struct Piloted {
     /// The tail of the pixels' values over seeds. If one value of one pixel makes up much of the variance, the price
     /// depends on whether the pilot met it.
     pub tail: Tail,
-    /// TimingConcerns about the times of its seeds.
+    /// Doubts about the times of its seeds.
     pub doubts: TimingConcerns,
 }
 

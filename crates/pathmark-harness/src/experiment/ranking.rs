@@ -69,7 +69,7 @@ pub struct Ranking {
     pub without_time: Vec<String>,
     /// The fewest repetitions that can tell any two schedules apart.
     pub least_repetitions: u32,
-    /// TimingConcerns about all times.
+    /// Doubts about all times.
     pub doubts: TimingConcerns,
 }
 

@@ -63,7 +63,7 @@ pub struct Outcome {
     pub merge_s: f64,
     /// The film's checksum; none if the sampler draws other random numbers in each run.
     pub checksum: Option<String>,
-    /// TimingConcerns about the run.
+    /// Doubts about the run.
     pub warnings: Vec<Warning>,
     /// The kernel's remarks on how it rendered.
     pub remarks: Vec<String>,

@@ -335,7 +335,7 @@ impl Setup {
         Error::system("running strategy", self.strategy.name, std::io::Error::other(error))
     }
 
-    /// TimingConcerns about a run of `spp` samples in which `workers_used` of `asked` workers had jobs.
+    /// Doubts about a run of `spp` samples in which `workers_used` of `asked` workers had jobs.
     pub(super) fn warnings(&self, counts: &Counts, spp: u32, asked: usize, workers_used: u32) -> Vec<Warning> {
         let mut warnings = Vec::new();
         if (workers_used as usize) < asked {

@@ -29,7 +29,7 @@ pub struct TraceHeader {
     pub makespan_s: f64,
     /// Threads that ran at least one job.
     pub workers: u32,
-    /// TimingConcerns about the run, as a row has them.
+    /// Doubts about the run, as a row has them.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub warnings: String,
 }
