@@ -154,7 +154,7 @@ fn rows(folder: &Path) -> Vec<[String; 4]> {
     let mut reader = csv::Reader::from_path(folder.join("records.csv")).unwrap();
     let heads = reader.headers().unwrap().clone();
     let column = |name: &str| heads.iter().position(|head| head == name).unwrap();
-    let columns = ["cell", "repetition", "order", "checksum"].map(column);
+    let columns = ["cell", "repetition", "run_order", "checksum"].map(column);
     let mut rows: Vec<_> =
         reader.records().map(|row| columns.map(|at| row.as_ref().unwrap()[at].to_string())).collect();
     rows.sort();

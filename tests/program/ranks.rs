@@ -218,7 +218,7 @@ fn ranks_stop_at_the_accuracy_at_which_one_process_stops() {
     let until = ["render", "cornell", "--size", "70x40", "--threads", "1", "--target-error", "0.2", "--json"];
     let alone = json(&finish(pathmark(folder.path(), &until)).with_code(0).out);
     let together = json(&ranks(folder.path(), 2, &[&until[..], &["--ranks", "guided"]].concat()).with_code(0).out);
-    for key in ["checksum", "spp", "target_error", "paths"] {
+    for key in ["checksum", "spp", "target_error", "samples"] {
         assert_eq!(together[key], alone[key], "{key}");
     }
     // A rank that may not resume from a file says so, and the others end with it.

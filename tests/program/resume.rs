@@ -103,7 +103,7 @@ fn a_failed_row_is_run_again() {
     finish(pathmark(folder.path(), &RESUME)).with_code(0);
     assert_eq!(results(&records), expected);
     let rows = rows(&records);
-    let orders: HashSet<&str> = rows.iter().map(|row| row["order"].as_str()).collect();
+    let orders: HashSet<&str> = rows.iter().map(|row| row["run_order"].as_str()).collect();
     assert_eq!(orders.len(), rows.len(), "two rows claim the same position in the sweep");
 }
 

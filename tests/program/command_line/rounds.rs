@@ -117,7 +117,7 @@ fn invalid_samples_are_not_forgotten_on_resume() {
     let render = |options: &[&str], code: i32| {
         let finished = finish(pathmark(folder.path(), &[&bright, options].concat())).with_code(code);
         assert_eq!(finished.err.contains("samples were NaN, infinite or negative"), code == 1, "{}", finished.err);
-        ["invalid_samples", "paths", "rays", "checksum"].map(|column| json(&finished.out)[column].clone())
+        ["invalid_samples", "samples", "rays", "checksum"].map(|column| json(&finished.out)[column].clone())
     };
     let expected = render(&["--spp", "20", "--strict"], 1);
     assert!(expected[0].as_u64() > Some(0), "{expected:?}");

@@ -132,7 +132,7 @@ fn the_price_of_an_effect_is_a_ratio_of_times() {
             ("cornell-diffuse", "smallpt") => 1100.0,
             _ => 1000.0,
         };
-        let (paths, repetition): (f64, f64) = (row["paths"].parse().unwrap(), row["repetition"].parse().unwrap());
+        let (paths, repetition): (f64, f64) = (row["samples"].parse().unwrap(), row["repetition"].parse().unwrap());
         row.insert("cpu_user_s".into(), (ns * 1e-9 * paths * (1.0 + repetition)).to_string());
         row.insert("cpu_system_s".into(), "0".into());
     };

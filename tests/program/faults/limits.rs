@@ -128,7 +128,7 @@ fn a_sweep_onto_a_small_disk_goes_on_when_there_is_space() {
 fn sorted_rows(folder: &Path) -> Vec<BTreeMap<String, String>> {
     let mut rows = sweep::rows(folder);
     for row in &mut rows {
-        row.remove("order");
+        row.remove("run_order");
     }
     rows.sort_by_key(|row| (row["cell"].clone(), row["repetition"].clone()));
     rows

@@ -50,7 +50,7 @@ impl Part {
             let repetition = repetition.ok_or_else(|| too_large("repetition", row.repetition.to_string()))?;
             let order = row.run_order.checked_mul(u64::from(self.shard.count));
             let order = order.and_then(|order| order.checked_add(u64::from(self.shard.index - 1)));
-            let order = order.ok_or_else(|| too_large("order", row.run_order.to_string()))?;
+            let order = order.ok_or_else(|| too_large("run_order", row.run_order.to_string()))?;
             Ok(Record { repetition, run_order: order, ..row.clone() })
         };
         self.rows.iter().map(number).collect()
