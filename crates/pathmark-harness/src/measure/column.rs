@@ -114,6 +114,7 @@ pub(super) use columns;
 
 #[cfg(test)]
 mod tests {
+    use super::{Column, RENAMED};
     use crate::measure::{COLUMNS, Record, SCHEMA};
 
     /// The headings of a real file, from the CSV writer.
@@ -135,6 +136,15 @@ mod tests {
         for column in COLUMNS {
             assert!(column.about.len() > 4 && column.since <= SCHEMA, "{column:?}");
         }
+    }
+
+    #[test]
+    fn renamed_columns_are_known_by_their_new_names() {
+        let is_column = |name: &str| COLUMNS.iter().any(|column| column.name == name);
+        for (old, new) in RENAMED {
+            assert!(is_column(new) && !is_column(old) && Column::new_name(old) == *new, "{old}, {new}");
+        }
+        assert_eq!(Column::new_name("makespan_s"), "makespan_s");
     }
 
     #[test]
