@@ -146,7 +146,7 @@ fn scenes(criterion: &mut Criterion) {
 
 fn main() {
     let units = [("primitive", "ray"), ("lanes", "ray and sphere"), ("scene", "ray")];
-    bench::run("intersection", &units, |criterion| {
+    bench::run(&units, |criterion| {
         primitives(criterion);
         lanes(criterion);
         scenes(criterion);

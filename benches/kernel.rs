@@ -58,7 +58,7 @@ fn kernel(criterion: &mut Criterion, scene: &str, estimators: &[&str]) {
 
 fn main() {
     let all: Vec<&str> = ESTIMATORS.iter().map(|entry| entry.name).collect();
-    bench::run("kernel", &[("kernel/", "sample")], |criterion| {
+    bench::run(&[("kernel/", "sample")], |criterion| {
         kernel(criterion, "cornell", &all);
         for scene in ["sky", "wada", "imbalance", "cornell-mesh"] {
             kernel(criterion, scene, &["bsdf"]);

@@ -75,5 +75,5 @@ fn pairs(criterion: &mut Criterion) {
 }
 
 fn main() {
-    bench::run("sampling", &[("sampling", "pair")], pairs);
+    bench::run(&[("sampling", "pair")], pairs);
 }

@@ -1,24 +1,25 @@
 //! `cargo bench --bench scheduling`: every strategy on one fixed small render and on empty jobs.
 //!
-//! Group `scheduling` renders cornell at 96x72, 4 spp, in tiles of 8x8, with 1, 2 and 4 threads, in samples per second.
-//! Group `empty-jobs` hands out jobs that do nothing. Group `seam` compares strategies with their bare mechanisms,
-//! which shows the overhead of the interface between scheduling and work for each job
-//! (`cargo bench --bench scheduling -- seam`). Group `trace` compares a measured render with the same render
-//! unmeasured, which shows the overhead of recording which worker ran which job when. A table of speedups against
-//! `serial` ends the run. Criterion runs its cases one after the other, so machine drift affects only some of them.
-//! `pathmark run thread-scaling` interleaves them, and conclusions should be based on it.
+//! Group `scheduling` renders cornell at 192x144, 4 spp, in tiles of 8x8, with 1, 2 and 4 threads, in samples per second.
+//! Each run has a serial run of the same tiles beside it, and the speedups at the end come from these adjacent pairs, in
+//! several processes. Group `empty-jobs` hands out jobs that do nothing. Group `seam` compares strategies with their bare
+//! mechanisms, which shows the overhead of the interface between scheduling and work for each job
+//! (`cargo bench --bench scheduling -- seam`). Group `trace` compares a measured render with the same render unmeasured,
+//! which shows the overhead of recording which worker ran which job when.
 
 mod bare;
 mod bench;
+mod pairs;
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput};
+use pairs::Speedups;
 use pathmark::film::{Decomposition, TileBuffer};
 use pathmark::kernel::{Kernel, Spec, build};
 use pathmark::measure::{Settings, Setup};
 use pathmark::strategy::{Config, Entry, Job, STRATEGIES, Strategy, Workers, find};
 use std::hint::black_box;
 use std::num::NonZeroUsize;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 use std::time::Duration;
 
 const THREADS: [usize; 3] = [1, 2, 4];
@@ -62,20 +63,70 @@ fn strategy(entry: &Entry, threads: usize) -> Box<dyn Strategy> {
     entry.build(config).expect("threads can be started")
 }
 
-fn scheduling(criterion: &mut Criterion) {
-    let spec = Spec { width: 96, height: 72, ..Spec::default() };
-    let samples = u64::from(spec.width) * u64::from(spec.height) * u64::from(SPP);
+/// The image of the cases: a serial run takes 10 to 50 ms.
+fn rendered() -> (usize, Job, u64) {
+    let spec = Spec { width: 192, height: 144, ..Spec::default() };
     let (jobs, job) = render_job(&spec);
+    (jobs, job, u64::from(spec.width) * u64::from(spec.height) * u64::from(SPP))
+}
+
+/// The cases, each with its strategy and its number of threads.
+fn cases() -> impl Iterator<Item = (String, &'static Entry, usize)> {
+    let of_entry = |entry: &'static Entry| {
+        let case =
+            move |threads: &usize| (pairs::name(entry.name, &threads_label(entry.workers, *threads)), entry, *threads);
+        thread_counts(entry.workers).iter().map(case)
+    };
+    STRATEGIES.iter().flat_map(of_entry)
+}
+
+/// Runs of a strategy, each beside a serial one.
+struct Beside {
+    jobs: usize,
+    job: Job,
+    strategy: Box<dyn Strategy>,
+    serial: Box<dyn Strategy>,
+}
+
+impl Beside {
+    fn new(entry: &Entry, threads: usize, jobs: usize, job: &Job) -> Self {
+        let serial = find("serial").expect("there is a serial strategy");
+        Self { jobs, job: Arc::clone(job), strategy: strategy(entry, threads), serial: strategy(serial, 1) }
+    }
+
+    fn run(&mut self, times: u64) -> (Duration, Vec<f64>) {
+        let Self { jobs, job, strategy, serial } = self;
+        let run =
+            |strategy: &mut Box<dyn Strategy>| strategy.run(*jobs, Arc::clone(job)).expect("threads can be started");
+        pairs::beside(times, &mut || run(strategy), &mut || run(serial))
+    }
+}
+
+/// The pairs of a case in a further process.
+fn pairs_of(case: &str, times: u64) -> Option<Vec<f64>> {
+    static RENDERED: LazyLock<(usize, Job, u64)> = LazyLock::new(rendered);
+    let (_, entry, threads) = cases().find(|(name, ..)| name == case)?;
+    let (jobs, job, _) = &*RENDERED;
+    let mut beside = Beside::new(entry, threads, *jobs, job);
+    // The first run of a process is slower than the rest.
+    beside.run(1);
+    Some(beside.run(times).1)
+}
+
+fn scheduling(criterion: &mut Criterion, speedups: &mut Speedups) {
+    let (jobs, job, samples) = rendered();
     let mut group = criterion.benchmark_group("scheduling");
     group.sample_size(10).sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(samples));
-    group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_millis(700));
-    for entry in STRATEGIES {
-        for &threads in thread_counts(entry.workers) {
-            let mut strategy = strategy(entry, threads);
-            group.bench_function(BenchmarkId::new(entry.name, threads_label(entry.workers, threads)), |bencher| {
-                bencher.iter(|| strategy.run(jobs, Arc::clone(&job)).expect("threads can be started"));
+    group.warm_up_time(Duration::from_millis(100)).measurement_time(Duration::from_millis(400));
+    for (name, entry, threads) in cases() {
+        let mut beside = Beside::new(entry, threads, jobs, &job);
+        group.bench_function(BenchmarkId::new(entry.name, threads_label(entry.workers, threads)), |bencher| {
+            bencher.iter_custom(|times| {
+                let (sum, ratios) = beside.run(times);
+                speedups.add(&name, &ratios);
+                sum
             });
-        }
+        });
     }
     group.finish();
 }
@@ -159,10 +210,15 @@ fn trace(criterion: &mut Criterion) {
 
 fn main() {
     let units = [("scheduling", "sample"), ("empty-jobs", "job"), ("seam", "job"), ("trace", "job")];
-    bench::run("scheduling", &units, |criterion| {
-        scheduling(criterion);
+    if pairs::is_further_process(pairs_of) {
+        return;
+    }
+    let mut speedups = Speedups::default();
+    let rows = bench::run(&units, |criterion| {
+        scheduling(criterion, &mut speedups);
         empty_jobs(criterion);
         seam(criterion);
         trace(criterion);
     });
+    speedups.finish(rows);
 }

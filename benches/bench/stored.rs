@@ -52,5 +52,8 @@ fn case(folder: &Path) -> Option<BenchRow> {
         median_s: seconds(median.get("point_estimate"))?,
         low_s: seconds(interval.get("lower_bound"))?,
         high_s: seconds(interval.get("upper_bound"))?,
+        speedup: None,
+        speedup_low: None,
+        speedup_high: None,
     })
 }

@@ -47,14 +47,3 @@ fn told(row: &BenchRow) -> String {
     let percent = 50.0 * (row.high_s - row.low_s) / row.median_s;
     format!("{ns:.decimals$} \u{b1}{percent:>4.1}%")
 }
-
-/// Prints speedups against the case `serial` of a group, the fastest first.
-pub(super) fn print_speedups(group: &str, serial: &BenchRow, rows: &[&BenchRow]) {
-    let mut speedups: Vec<(&BenchRow, [f64; 3])> = rows.iter().map(|row| (*row, row.speedup_over(serial))).collect();
-    speedups.sort_by(|a, b| b.1[0].total_cmp(&a.1[0]));
-    println!("\n{group}: speedup against serial, from medians; interval from both 95 % intervals");
-    println!("{:<16} {:>7} {:>9}   interval", "strategy", "threads", "speedup");
-    for (row, [speedup, low, high]) in speedups {
-        println!("{:<16} {:>7} {speedup:>9.3}   {low:.3} to {high:.3}", row.case, row.parameter);
-    }
-}

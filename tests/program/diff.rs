@@ -161,12 +161,17 @@ fn rows(folder: &Path) -> Vec<[String; 4]> {
     rows
 }
 
+/// The small experiment with as few pairs as a process can have.
+fn in_two_pairs() -> String {
+    TINY.replace("repetitions = 3\n", "repetitions = 3\npairs = 2\n")
+}
+
 /// The limit is so large that times differ by less as soon as an interval has two ends. Five intervals that hold
 /// together at every look need 11 repetitions for that: there, 2 * 2^n / (n + 1) reaches 2 / (.05 / 5).
 #[test]
 fn repetitions_go_on_until_it_is_known() {
     let folder = tempfile::tempdir().unwrap();
-    write_tiny(folder.path(), TINY);
+    write_tiny(folder.path(), &in_two_pairs());
     other_build(folder.path());
     let until = |out: &str, options: &[&str], code: i32| {
         let all = ["run", "tiny.toml", "--baseline", "./other", "--out", out];
@@ -175,16 +180,16 @@ fn repetitions_go_on_until_it_is_known() {
     let huge = "1000000000%";
     let finished = until("out", &["--until", huge], 0);
     assert!(finished.err.contains("5 of 5 cells decided"), "{}", finished.err);
-    assert_eq!(rows(&folder.path().join("out/tiny")).len(), 5 * 11);
+    assert_eq!(rows(&folder.path().join("out/tiny")).len(), 5 * 11 * 2);
     let compared = ["diff", "out/baseline/tiny", "out/tiny", "--json", "--fail-above", huge];
     let found = json(&run(folder.path(), &compared, 0));
     assert_eq!(found["sequential"], true);
     assert!(found["cells"].as_array().unwrap().iter().all(|cell| cell["change"] == "same"), "{found}");
     // Fewer repetitions decide nothing, and neither does a time limit of zero.
     until("few", &["--until", huge, "--repetitions", "10"], 0);
-    assert_eq!(rows(&folder.path().join("few/tiny")).len(), 5 * 10);
+    assert_eq!(rows(&folder.path().join("few/tiny")).len(), 5 * 10 * 2);
     until("short", &["--until", huge, "--max-time", "0s"], 0);
-    assert_eq!(rows(&folder.path().join("short/tiny")).len(), 5);
+    assert_eq!(rows(&folder.path().join("short/tiny")).len(), 5 * 2);
     for (options, field) in [
         (["--until", "-1%"].as_slice(), "until"),
         (&["--until", "0"], "until"),
@@ -202,7 +207,7 @@ fn repetitions_go_on_until_it_is_known() {
 #[test]
 fn two_builds_are_measured_in_turns() {
     let folder = tempfile::tempdir().unwrap();
-    write_tiny(folder.path(), TINY);
+    write_tiny(folder.path(), &in_two_pairs());
     let script = other_build(folder.path());
     let finished = run(folder.path(), &["run", "tiny.toml", "--baseline", "./other", "--out", "out"], 0);
     assert!(finished.err.contains("pathmark diff"), "{}", finished.err);

@@ -16,6 +16,7 @@ mod killed_ranks;
 mod lost_cells;
 mod merged_sweeps;
 mod page;
+mod pairs;
 mod plan;
 mod price;
 #[path = "../support/program.rs"]

@@ -43,6 +43,7 @@ fn measured(folder: &Path, seed: u64, references: [PathBuf; 2]) -> Finished {
         object: None,
         external: None,
         trace: None,
+        stays: false,
     };
     let mut command = pathmark(folder, &["cell"]);
     let mut child = command.stdin(Stdio::piped()).spawn().unwrap();

@@ -12,6 +12,8 @@ use crate::interval::{Estimate, Interval, is_level};
 use crate::mean::{Moments, t_quantile};
 use crate::quantile::median;
 use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::collections::BTreeMap;
 
 /// The variance of a median of n normal values is this over n.
 const OF_MEDIAN: f64 = std::f64::consts::FRAC_PI_2;
@@ -55,6 +57,28 @@ pub fn paired_ratio(processes: &[Vec<f64>], level: f64) -> Option<PairedRatio> {
     let ratio = Estimate { value: libm::exp(value), interval };
     let pairs = processes.iter().map(Vec::len).sum();
     Some(PairedRatio { ratio, pairs, processes: values.len(), spread: spread_of(&logarithms)? })
+}
+
+/// The pairs of each process, from ratios with the numbers of their processes.
+pub fn by_process(ratios: impl IntoIterator<Item = (u32, f64)>) -> Vec<Vec<f64>> {
+    let mut processes: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
+    for (process, ratio) in ratios {
+        processes.entry(process).or_default().push(ratio);
+    }
+    processes.into_values().collect()
+}
+
+/// The probability, if the ratio were 1 or more, that the processes show one as small as this or smaller (Student's t).
+/// 1 where [`paired_ratio`] has no answer.
+pub fn p_of_less(processes: &[Vec<f64>]) -> f64 {
+    let moments = logarithms(processes)
+        .filter(|all| all.len() >= FEWEST_PROCESSES)
+        .and_then(|all| Some(Moments::of(&all.iter().map(|own| median(own)).collect::<Option<Vec<f64>>>()?)));
+    let t = moments.and_then(|moments| {
+        let error = moments.standard_error().filter(|error| *error > 0.0)?;
+        Some((moments.mean()? / error, StudentsT::new(0.0, 1.0, processes.len() as f64 - 1.0).ok()?))
+    });
+    t.map_or(1.0, |(t, law)| law.cdf(t))
 }
 
 /// Returns the spread of ratios within and between processes; `None` below two processes.
@@ -269,6 +293,19 @@ mod tests {
             assert!((found.ratio.interval.high - expected).abs() < 1e-9, "{found:?}");
             assert!((found.spread.between - d).abs() < 1e-12 && found.spread.within == 0.0);
         }
+    }
+
+    /// Student's t with two degrees of freedom has the closed form 1/2 + t / (2 √(2 + t²)).
+    #[test]
+    fn small_ratios_have_small_probabilities() {
+        let processes = |shift: f64| [-0.1, 0.0, 0.1].map(|value| vec![libm::exp(value + shift)]);
+        for shift in [-0.3, -0.01, 0.0, 0.2] {
+            let t = shift / (0.1 / 3.0_f64.sqrt());
+            let expected = 0.5 + t / (2.0 * (2.0 + t * t).sqrt());
+            assert!((p_of_less(&processes(shift)) - expected).abs() < 1e-9);
+        }
+        assert_eq!(p_of_less(&[vec![0.5], vec![0.6]]), 1.0);
+        assert_eq!(by_process([(3, 1.0), (1, 2.0), (3, 4.0)]), [vec![2.0], vec![1.0, 4.0]]);
     }
 
     /// Expensive processes ask for more pairs in each, cheap ones for single pairs; a plan reaches its precision.

@@ -6,6 +6,7 @@
 //! procedure", Scandinavian Journal of Statistics 6 (1979). The probability that any reported order is wrong is then at
 //! most the requested one, for all distributions and any dependence between the comparisons.
 
+use super::adjacent_pairs::{by_process, p_of_less};
 use super::confidence_sequence::{FEWEST, Stopping, median_sequence};
 use super::interval::is_level;
 use statrs::distribution::{Binomial, DiscreteCDF};
@@ -24,11 +25,29 @@ use std::collections::{BTreeMap, BTreeSet};
 /// assert_eq!(told_apart(&things, 0.05), BTreeSet::from([(1, 0)]));
 /// ```
 pub fn told_apart<K: Ord>(things: &[BTreeMap<K, f64>], miss: f64) -> BTreeSet<(usize, usize)> {
+    holm(things, sign_test, miss)
+}
+
+/// The same for values that were measured in adjacent pairs, by process and pair: tests Student's t over processes.
+pub fn told_apart_in_pairs(things: &[BTreeMap<Turn, f64>], miss: f64) -> BTreeSet<(usize, usize)> {
+    holm(things, |first, second| p_of_less(&by_process(ratios_in_pairs(first, second))), miss)
+}
+
+/// A process and a pair.
+pub type Turn = (u32, Option<u32>);
+
+/// The ratios of values of the same turn, with their processes.
+pub fn ratios_in_pairs(above: &BTreeMap<Turn, f64>, below: &BTreeMap<Turn, f64>) -> Vec<(u32, f64)> {
+    above.iter().filter_map(|(turn, value)| Some((turn.0, value / below.get(turn)?))).collect()
+}
+
+/// The orders that a test with one-sided p-values establishes, corrected for the number of tests.
+fn holm<T>(things: &[T], p_of_less: impl Fn(&T, &T) -> f64, miss: f64) -> BTreeSet<(usize, usize)> {
     let mut tests = Vec::new();
     for (a, of_a) in things.iter().enumerate() {
         for (b, of_b) in things.iter().enumerate().take(a) {
-            tests.push((sign_test(of_a, of_b), (a, b)));
-            tests.push((sign_test(of_b, of_a), (b, a)));
+            tests.push((p_of_less(of_a, of_b), (a, b)));
+            tests.push((p_of_less(of_b, of_a), (b, a)));
         }
     }
     tests.sort_by(|x, y| x.0.total_cmp(&y.0));
@@ -51,11 +70,17 @@ pub fn told_apart<K: Ord>(things: &[BTreeMap<K, f64>], miss: f64) -> BTreeSet<(u
 /// assert_eq!(may_be_least(&things, 0.05, Stopping::Fixed), [false, true]);
 /// ```
 pub fn may_be_least<K: Ord>(things: &[&BTreeMap<K, f64>], miss: f64, stopping: Stopping) -> Vec<bool> {
-    let is_less = |first, second| match stopping {
+    let is_less = |first: &BTreeMap<K, f64>, second: &BTreeMap<K, f64>| match stopping {
         Stopping::Fixed => is_level(miss) && sign_test(first, second) <= miss,
         // An interval misses on two sides, of which only one counts here.
         Stopping::Sequential => order_so_far(first, second, 2.0 * miss) == Some(Ordering::Less),
     };
+    things.iter().map(|own| !things.iter().any(|other| is_less(*other, *own))).collect()
+}
+
+/// The same for values that were measured in adjacent pairs.
+pub fn may_be_least_in_pairs(things: &[&BTreeMap<Turn, f64>], miss: f64) -> Vec<bool> {
+    let is_less = |first, second| is_level(miss) && p_of_less(&by_process(ratios_in_pairs(first, second))) <= miss;
     things.iter().map(|own| !things.iter().any(|other| is_less(*other, *own))).collect()
 }
 

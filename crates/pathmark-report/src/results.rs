@@ -2,7 +2,7 @@
 
 use super::estimated::Estimated;
 use super::naming::{Part, joined, needed};
-use super::rows::{Row, gathered, group};
+use super::rows::{Row, by_process, gathered, group};
 use super::schedule::{Schedule, over_ranks, strategy};
 use crate::analysis::confidence_sequence::Stopping;
 use crate::error::{InputError, Result};
@@ -48,7 +48,7 @@ impl Results {
         let left_out = LeftOut::of(&done);
         done.retain(|row| !row.is_left_out());
         name_scenes_alike(&mut done);
-        let rows = named(done);
+        let rows = by_process(named(done));
         let image_parts = image_parts(&rows);
         let (folder, out) = (folder.to_path_buf(), out.to_path_buf());
         Ok(Self { definition, run, failed, left_out, folder, out, rows, image_parts })
@@ -212,7 +212,7 @@ fn name_scenes_alike(records: &mut [Record]) {
 fn check_identities(records: &[Record], path: &Path) -> Result<()> {
     let mut known = HashMap::new();
     for (index, record) in records.iter().enumerate().filter(|(_, record)| record.error.is_empty()) {
-        let key = (record.image_key(), record.schedule_key(), record.repetition);
+        let key = (record.image_key(), record.schedule_key(), record.repetition, record.pair);
         if let Some(other) = known.insert(key, &record.cell) {
             let problem = format!(
                 "is the same image by the same schedule in the same repetition as {other}: nothing tells the two rows apart"

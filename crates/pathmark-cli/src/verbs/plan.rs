@@ -1,8 +1,8 @@
-//! Plans of `reproduce`: the table of `--plan`, and a line before a long run.
+//! Plans: the table of `--plan`, what pairs reach, and a line before a long run.
 
 use crate::console::output::print;
 use crate::error::Result;
-use crate::experiment::{Plan, Prices, Sweep};
+use crate::experiment::{Plan, Power, Prices, Sweep};
 use crate::lab::Lab;
 
 /// The plans of all sweeps, and how they were made.
@@ -53,7 +53,8 @@ impl Plans {
             format!("{:width$}  {:>6}  {:>6}  {seconds:>8.0}  {megabytes:>8.1}", plan.name, plan.cells, plan.rows)
         };
         print(&head)?;
-        for plan in self.each.iter().chain([&self.sum()]) {
+        let sum = Some(self.sum()).filter(|_| self.each.len() > 1);
+        for plan in self.each.iter().chain(&sum) {
             print(&row(plan))?;
         }
         let pilot = self.kinds - self.guessed;
@@ -72,6 +73,25 @@ impl Plans {
         }
         Ok(())
     }
+}
+
+/// Prints the plan of one experiment, and what pairs of its comparisons reach.
+pub(super) fn print_with_power(lab: &Lab, sweep: &Sweep<'_>) -> Result<()> {
+    Plans::new(lab, std::slice::from_ref(sweep))?.print(0)?;
+    for Power { with, comparisons, round_s, plans } in sweep.power()? {
+        print(&format!("\n{comparisons} comparisons with {with}; a round of all its cells takes {round_s:.2} s"))?;
+        print(&format!("{:>9}  {:>9}  {:>7}  {:>8}", "precision", "processes", "pairs", "seconds"))?;
+        for (share, plan) in plans {
+            let goal = format!("±{:.0} %", 100.0 * share);
+            print(&match plan {
+                Some(plan) => {
+                    format!("{goal:>9}  {:>9}  {:>7}  {:>8.0}", plan.processes, plan.pairs, plan.seconds)
+                }
+                None => format!("{goal:>9}  not within {} processes", 1 << 12),
+            })?;
+        }
+    }
+    Ok(())
 }
 
 fn megabytes(plan: &Plan) -> f64 {

@@ -1,6 +1,6 @@
 //! `pathmark run EXPERIMENT`: one experiment, and its report.
 
-use super::{profile, strict::Strict};
+use super::{plan, profile, strict::Strict};
 use crate::command_line;
 use crate::console::Console;
 use crate::console::output::{lock_folder, print};
@@ -29,6 +29,10 @@ pub(crate) struct Arguments {
     /// Resume a sweep that was stopped
     #[arg(long)]
     resume: bool,
+    /// Print rows, estimated seconds and bytes, and how many pairs of what is compared reach which precision; run only a
+    /// pilot
+    #[arg(long, conflicts_with = "resume")]
+    plan: bool,
     /// After all repetitions, run the cells with doubtful rows again, once for each such row; keep both rows
     #[arg(long)]
     rerun_doubtful: bool,
@@ -97,6 +101,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     };
     let mut files = Files::default();
     let sweep = Sweep::new(&definition, &options, &mut files)?;
+    if arguments.plan {
+        return plan::print_with_power(lab, &sweep);
+    }
     report::claim("out", &arguments.out, &mut files)?;
     // Other experiments may run in the same folder, each in its own subfolder; `reproduce` may not.
     let _lock = lock_folder(&arguments.out, Sharing::Shared)?;

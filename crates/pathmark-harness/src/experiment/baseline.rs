@@ -1,7 +1,7 @@
 //! A sweep of two builds in turns: `run EXPERIMENT --baseline OLD`.
 //!
-//! Both builds run each repetition of each cell, one right after the other, and alternate in going first. Drift of the
-//! machine's speed affects both rows of a pair equally, so their ratio is free of it. The other build's rows lie in
+//! Both builds run each cell in adjacent pairs ([`super::pairs`]), and alternate in going first; curves run whole, one build
+//! after the other. Drift of the machine's speed affects both rows of a pair equally, so their ratio is free of it. The other build's rows lie in
 //! `OUT/baseline`, like those of a separate sweep.
 
 use super::cell_process::{CELL_ABOUT, CellJob, PointJob};
@@ -77,25 +77,35 @@ impl Baseline {
         Ok(Self { program, folder, run, file, has_rows: false })
     }
 
+    /// The program that runs its cells.
+    pub(super) fn program(&self) -> &Path {
+        &self.program
+    }
+
+    /// Its job of a cell: images and traces are kept of this build only.
+    pub(super) fn job(job: &CellJob) -> CellJob {
+        let points = job.points.iter().map(|point| PointJob { image: None, ..point.clone() }).collect();
+        CellJob { points, trace: None, ..job.clone() }
+    }
+
     /// Runs a repetition of a cell; returns its rows.
     pub(super) fn run(&mut self, job: &CellJob, limit: Option<Duration>) -> Result<Vec<Record>> {
-        // Images and traces are kept of this build only.
-        let points = job.points.iter().map(|point| PointJob { image: None, ..point.clone() }).collect();
-        let job = CellJob { points, trace: None, ..job.clone() };
-        let mut rows = Vec::new();
-        for record in job.run_in_child_of(Ok(self.program.clone()), limit) {
-            let record = Record { run_order: job.order, ..record };
-            if !self.has_rows {
-                // The rows say which build measured them.
-                self.run.program = version_of(&self.program);
-                self.run.machine.commit.clone_from(&record.commit);
-                self.run.machine.dirty = record.dirty;
-                self.run.write(&self.folder.join(MACHINE))?;
-                self.has_rows = true;
-            }
-            self.file.append(&record)?;
-            rows.push(record);
-        }
+        let rows = Self::job(job).run_in_child_of(Ok(self.program.clone()), limit);
+        let rows: Vec<Record> = rows.into_iter().map(|row| Record { run_order: job.order, ..row }).collect();
+        self.append(&rows)?;
         Ok(rows)
+    }
+
+    /// Adds its rows to the file.
+    pub(super) fn append(&mut self, rows: &[Record]) -> Result<()> {
+        if let Some(first) = rows.first().filter(|_| !self.has_rows) {
+            // The rows say which build measured them.
+            self.run.program = version_of(&self.program);
+            self.run.machine.commit.clone_from(&first.commit);
+            self.run.machine.dirty = first.dirty;
+            self.run.write(&self.folder.join(MACHINE))?;
+            self.has_rows = true;
+        }
+        self.file.append_all(rows)
     }
 }

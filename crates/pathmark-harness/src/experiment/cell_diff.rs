@@ -1,13 +1,16 @@
 //! Comparison of the times of one cell in two measurements.
 //!
-//! Rows of one sweep in turns (`run --baseline`) give a ratio for each repetition; other rows give the ratios of all pairs
+//! Rows of one sweep in turns (`run --baseline`) give a ratio for each adjacent pair, or in older rows for each repetition; other rows give the ratios of all pairs
 //! of an old and a new time, with an interval that allows for their autocorrelation. If repetitions in pairs had a goal
 //! (`run --until`), the intervals hold at every look.
 
+use crate::analysis::adjacent_pairs::{by_process, paired_ratio};
 use crate::analysis::confidence_sequence::median_sequence;
 use crate::analysis::quantile::{median, median_interval};
 use crate::analysis::rank_sum::RankSum;
+use crate::analysis::ranking::{Turn, ratios_in_pairs};
 use crate::analysis::{Estimate, Interval};
+use crate::measure::Record;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -58,8 +61,27 @@ pub struct CellDiff {
     pub change: Change,
 }
 
-/// Seconds by repetition.
-pub(super) type Times = BTreeMap<u32, f64>;
+/// Seconds by repetition, and by pair where a repetition is a process of adjacent pairs.
+pub(super) type Times = BTreeMap<Turn, f64>;
+
+/// The repetition and pair of a row.
+pub(super) fn turn(record: &Record) -> Turn {
+    (record.repetition, record.pair)
+}
+
+/// The median time of each process.
+pub(super) fn of_processes(times: &Times) -> Times {
+    let mut processes: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
+    for ((process, _), seconds) in times {
+        processes.entry(*process).or_default().push(*seconds);
+    }
+    processes.into_iter().filter_map(|(process, own)| Some(((process, None), median(&own)?))).collect()
+}
+
+/// Whether the times were measured in adjacent pairs.
+pub(super) fn is_in_pairs(times: &Times) -> bool {
+    times.keys().any(|(_, pair)| pair.is_some())
+}
 
 /// How times of a cell are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,10 +121,14 @@ impl Judge {
         let values = |times: &Times| times.values().copied().collect::<Vec<_>>();
         let (olds, news) = (values(old), values(new));
         let in_pairs = |interval: fn(&[f64], f64) -> Option<Interval>| {
-            let ratios: Vec<f64> = old.iter().filter_map(|(at, old)| Some(new.get(at)? / old)).collect();
+            let processes = by_process(ratios_in_pairs(new, old));
+            let ratios: Vec<f64> = processes.iter().filter_map(|own| median(own)).collect();
             median(&ratios).zip(interval(&ratios, self.level)).map(|(value, interval)| Estimate { value, interval })
         };
         let estimate: Option<Estimate> = match pairing {
+            Pairing::Paired if is_in_pairs(new) => {
+                paired_ratio(&by_process(ratios_in_pairs(new, old)), self.level).map(|found| found.ratio)
+            }
             Pairing::None => self.unpaired.ratio_of_series(&olds, &news),
             Pairing::Paired => in_pairs(median_interval),
             Pairing::Sequential => in_pairs(median_sequence),
@@ -134,8 +160,8 @@ mod tests {
     use rand::Rng;
     use rand_pcg::Pcg64Dxsm;
 
-    fn numbered(values: &[f64]) -> BTreeMap<u32, f64> {
-        (0..).zip(values.iter().copied()).collect()
+    fn numbered(values: &[f64]) -> Times {
+        (0..).map(|at| (at, None)).zip(values.iter().copied()).collect()
     }
 
     fn change(old: &[f64], new: &[f64], paired: bool) -> Change {
@@ -188,8 +214,8 @@ mod tests {
                 let [mut old, mut new] = [BTreeMap::new(), BTreeMap::new()];
                 let change = (0..200).find_map(|at| {
                     let drift = 1.0 + 0.5 * libm::sin(0.1 * f64::from(at));
-                    old.insert(at, drift * noise());
-                    new.insert(at, drift * noise() * factor);
+                    old.insert((at, None), drift * noise());
+                    new.insert((at, None), drift * noise() * factor);
                     let found = judge.compare("cell", Pairing::Sequential, &old, &new)?.change;
                     (found != Change::Undecided).then_some(found)
                 });
@@ -225,7 +251,7 @@ mod tests {
             let mut state = normal();
             let mut step = |at| {
                 state = rho * state + (1.0 - rho * rho).sqrt() * normal();
-                (at, factor * libm::exp(0.01 * state))
+                ((at, None), factor * libm::exp(0.01 * state))
             };
             (0..count).map(&mut step).collect()
         };

@@ -4,6 +4,9 @@
 //! The parent writes a [`CellJob`] as a line of JSON to the child's standard input and keeps that open; the child
 //! answers with its rows as JSON on its standard output. A child whose input ends has lost its parent. It stops,
 //! together with all processes it started, so that no orphan disturbs a resumed sweep.
+//!
+//! A child whose job says so stays, and runs its cell again for each further line: runs that are compared in pairs follow
+//! each other at once ([`super::pairs`]).
 
 use super::external::filled;
 use super::object_pixels::{object_pixels, only};
@@ -27,7 +30,8 @@ use serde::{Deserialize, Serialize};
 use std::env;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, ExitStatus};
+use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 
 /// The beginning of the help of the verb `cell`. A program whose help contains it can run cells, so later builds must
@@ -56,6 +60,15 @@ pub struct CellJob {
     pub external: Option<(External, PathBuf)>,
     /// The path for the trace; a curve has none.
     pub trace: Option<PathBuf>,
+    /// Whether the process stays and runs the cell again for each further line of its input.
+    #[serde(default)]
+    pub stays: bool,
+}
+
+/// What a process that stays keeps of its first run.
+struct Kept {
+    setup: Setup,
+    first: Record,
 }
 
 /// One row of a cell.
@@ -79,6 +92,12 @@ impl CellJob {
         }
     }
 
+    /// The same cell without what a sweep keeps of it.
+    pub(super) fn alone(&self) -> Self {
+        let points = self.points.iter().map(|point| PointJob { image: None, ..point.clone() }).collect();
+        Self { points, references: None, object: None, trace: None, ..self.clone() }
+    }
+
     /// Runs the cell in a child process and returns a row for each point. An error there, and the end of the time limit,
     /// become failed rows.
     pub(super) fn run_in_child(&self, limit: Option<Duration>) -> Vec<Record> {
@@ -92,15 +111,20 @@ impl CellJob {
         program: std::result::Result<PathBuf, String>,
         limit: Option<Duration>,
     ) -> Vec<Record> {
-        let rows = program.and_then(|program| self.child(&program, limit)).and_then(|rows| {
-            let wrong = || format!("the cell's process gave {} rows instead of {}", rows.len(), self.points.len());
-            if rows.len() == self.points.len() { Ok(rows) } else { Err(wrong()) }
-        });
-        rows.unwrap_or_else(|error| self.failed(&error))
+        let rows = program.and_then(|program| self.child(&program, limit));
+        rows.and_then(|answer| self.rows(&answer)).unwrap_or_else(|error| self.failed(&error))
+    }
+
+    /// The rows of an answer, one for each point.
+    pub(super) fn rows(&self, answer: &[u8]) -> std::result::Result<Vec<Record>, String> {
+        let rows: Vec<Record> =
+            serde_json::from_slice(answer).map_err(|e| format!("reading the answer of the cell's process: {e}"))?;
+        let wrong = || format!("the cell's process gave {} rows instead of {}", rows.len(), self.points.len());
+        if rows.len() == self.points.len() { Ok(rows) } else { Err(wrong()) }
     }
 
     /// A failed row for each point.
-    fn failed(&self, error: &str) -> Vec<Record> {
+    pub(super) fn failed(&self, error: &str) -> Vec<Record> {
         let failed = |point: &PointJob| {
             let settings = Settings { spp: point.spp, ..self.settings.clone() };
             self.label(point, failure(&settings, error))
@@ -108,7 +132,7 @@ impl CellJob {
         self.points.iter().map(failed).collect()
     }
 
-    fn child(&self, program: &Path, limit: Option<Duration>) -> std::result::Result<Vec<Record>, String> {
+    fn child(&self, program: &Path, limit: Option<Duration>) -> std::result::Result<Vec<u8>, String> {
         let mut command = Command::new(program);
         command.arg("cell");
         let text = serde_json::to_string(self).map_err(|e| format!("describing the cell: {e}"))?;
@@ -116,13 +140,12 @@ impl CellJob {
             .map_err(|e| format!("running the cell's process: {e}"))?
             .ok_or_else(|| timed_out(limit))?;
         if !output.status.success() {
-            let said = String::from_utf8_lossy(&output.stderr);
-            return Err(format!("the cell's process ended with {}: {}", output.status, said.trim()));
+            return Err(ended(output.status, String::from_utf8_lossy(&output.stderr).trim()));
         }
-        serde_json::from_slice(&output.stdout).map_err(|e| format!("reading the answer of the cell's process: {e}"))
+        Ok(output.stdout)
     }
 
-    fn run(&self, lab: &Lab) -> Result<Vec<Record>> {
+    fn run(&self, lab: &Lab, kept: &mut Option<Kept>) -> Result<Vec<Record>> {
         if let Some(ranks) = self.settings.ranks {
             return self.by_processes(lab, ranks);
         }
@@ -139,13 +162,30 @@ impl CellJob {
         }
         if let [point] = self.points.as_slice() {
             let setup = self.setup(lab, point.spp)?;
+            if self.stays {
+                // The first run of a process is slower than the rest.
+                setup.run(None)?;
+            }
             let outcome = setup.run(None)?;
             if let Some(path) = &self.trace {
                 TraceFile::new(&setup, &outcome).write(path)?;
             }
-            return Ok(vec![self.row(point, &setup, &outcome, references.as_ref())?]);
+            let row = self.row(point, &setup, &outcome, references.as_ref())?;
+            *kept = Some(Kept { setup, first: row.clone() });
+            return Ok(vec![row]);
         }
         self.curve(lab, references.as_ref())
+    }
+
+    /// Runs the cell again: with the setup of the first run, if that kept one. The image is the same, so it is neither
+    /// written nor compared again.
+    fn run_again(&self, lab: &Lab, kept: &mut Option<Kept>) -> Result<Vec<Record>> {
+        let ([point], Some(Kept { setup, first })) = (self.points.as_slice(), &kept) else {
+            return self.run(lab, kept);
+        };
+        let point = PointJob { image: None, ..point.clone() };
+        let row = self.row(&point, setup, &setup.run(None)?, None)?.with_errors(first.errors());
+        Ok(vec![Record { object_mse: first.object_mse, ..row }])
     }
 
     /// The setup with `spp` samples per pixel; refuses a scene that has changed since the experiment began.
@@ -304,31 +344,43 @@ impl CellJob {
     }
 }
 
+/// The error of a process that ended without an answer.
+pub(super) fn ended(status: ExitStatus, said: &str) -> String {
+    format!("the cell's process ended with {status}: {said}")
+}
+
 /// The child's side: reads a job and prints its rows. A process that a launcher of ranks started reads it from a file.
 pub fn child_main(lab: &Lab, file: Option<&Path>) -> Result<()> {
     let read = |text: &str, from: &str| -> Result<CellJob> {
         let problem = |e| format!("is not the description of a cell: {e}");
         serde_json::from_str(text).map_err(|e| InputError::new(from, "", problem(e)).into())
     };
-    let rows = if let Some(path) = file {
+    if let Some(path) = file {
         let rows = read(&read_text(path)?, &path.display().to_string())?.run_as_rank(lab)?;
-        if rows.is_empty() {
-            return Ok(());
+        return if rows.is_empty() { Ok(()) } else { write_answer(&rows) };
+    }
+    let mut text = String::new();
+    std::io::stdin().read_line(&mut text).map_err(|e| Error::system("reading", "standard input", e))?;
+    let job = read(&text, "standard input")?;
+    let (tell, told) = channel();
+    let listen = move || {
+        // The parent's lines end when it is gone.
+        for _ in std::io::stdin().lines().map_while(std::result::Result::ok) {
+            tell.send(()).ok();
         }
-        rows
-    } else {
-        let mut text = String::new();
-        std::io::stdin().read_line(&mut text).map_err(|e| Error::system("reading", "standard input", e))?;
-        let job = read(&text, "standard input")?;
-        let wait_for_the_end = || {
-            // The parent sends nothing more, so this returns when it is gone.
-            let _ = std::io::copy(&mut std::io::stdin(), &mut std::io::sink());
-            process_group::end_own_group();
-        };
-        let started = std::thread::Builder::new().spawn(wait_for_the_end);
-        started.map_err(|e| Error::system("starting", "the thread that waits for the parent's end", e))?;
-        job.run(lab)?
+        process_group::end_own_group();
     };
-    let answer = serde_json::to_string(&rows).map_err(|e| Error::system("writing", "standard output", e.into()))?;
+    let started = std::thread::Builder::new().spawn(listen);
+    started.map_err(|e| Error::system("starting", "the thread that waits for the parent's end", e))?;
+    let mut kept = None;
+    write_answer(&job.run(lab, &mut kept)?)?;
+    while job.stays && told.recv().is_ok() {
+        write_answer(&job.run_again(lab, &mut kept)?)?;
+    }
+    Ok(())
+}
+
+fn write_answer(rows: &[Record]) -> Result<()> {
+    let answer = serde_json::to_string(rows).map_err(|e| Error::system("writing", "standard output", e.into()))?;
     writeln!(std::io::stdout(), "{answer}").map_err(|e| Error::system("writing", "standard output", e))
 }

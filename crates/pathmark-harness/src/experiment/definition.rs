@@ -24,6 +24,11 @@
 //! # fewest samples on the way to each spp. profiles = ["reports"] is for a matrix that other profiles do not have, and repetitions = 3 for one
 //! # whose cells are run no more often.
 //!
+//! [[compare]]                    # optional: cells that run side by side, in adjacent pairs (see `comparisons`)
+//! what = { threads = [2] }       # optional: all cells
+//! with = { strategy = ["serial"] }
+//! goal = "2 %"                   # optional: half of the interval that each ratio should have
+//!
 //! [figure.price-list]            # optional: what a figure of the list above is told
 //! goals = [0.1, 0.01]
 //!
@@ -33,6 +38,7 @@
 //!
 //! [quick]                        # what `--quick` renders; the profile may replace any axis of the matrices
 //! size = [128, 96]
+//! pairs = 16                     # optional: of each process, if there are comparisons; repetitions then count processes
 //! repetitions = 6                # or { until = "3 %", at-most = 200, max-time = "60 s" }; until = "fastest" or "order" compares schedules
 //! reference-spp = 2000           # optional: ten times the largest spp
 //!
@@ -47,6 +53,7 @@
 //! reference-spp = 2000
 //! ```
 
+use super::comparisons::Compare;
 use super::stopping_rule::StoppingRule;
 use super::table::{Matrix, Scale, one_or_many};
 use super::texts::experiments;
@@ -159,6 +166,9 @@ pub struct Definition {
     pub requires: Vec<String>,
     #[serde(deserialize_with = "one_or_many")]
     pub(super) matrix: Vec<Matrix>,
+    /// What runs side by side.
+    #[serde(default)]
+    pub(super) compare: Vec<Compare>,
     /// Other programs.
     #[serde(default)]
     pub external: Vec<External>,
@@ -267,6 +277,11 @@ impl Definition {
     /// The goal at which repetitions stop; `None` if their number is fixed.
     pub(super) fn until(&self, profile: Profile) -> Result<Option<&StoppingRule>> {
         Ok(self.scale(profile)?.until.as_ref())
+    }
+
+    /// Pairs of a process, where cells are compared.
+    pub(super) fn pairs(&self, profile: Profile) -> Result<Option<u32>> {
+        Ok(self.scale(profile)?.pairs)
     }
 
     pub(super) fn matrices(&self, profile: Profile) -> impl Iterator<Item = &Matrix> {

@@ -2,7 +2,7 @@
 //!
 //! All intervals of a comparison, over all of its experiments, hold together with 95 % confidence (Bonferroni).
 
-use super::cell_diff::{CellDiff, Judge, Pairing, Times};
+use super::cell_diff::{CellDiff, Judge, Pairing, Times, turn};
 use super::run_file::RunFile;
 use super::sides::{Compared, Lost, Side, check_images, sides};
 use crate::error::{InputError, Result};
@@ -79,7 +79,7 @@ fn times(rows: &[Record]) -> Cells {
     let mut times = Cells::new();
     for row in rows.iter().filter(|row| row.error.is_empty()) {
         if let Some(seconds) = row.makespan_s {
-            times.entry(row.cell.clone()).or_default().insert(row.repetition, seconds);
+            times.entry(row.cell.clone()).or_default().insert(turn(row), seconds);
         }
     }
     times

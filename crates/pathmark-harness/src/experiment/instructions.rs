@@ -4,7 +4,7 @@
 //! caches and waiting. Valgrind runs threads one at a time and has no AVX-512, so kernels in lanes use AVX2. The counts
 //! of a sweep lie beside its rows in `instructions.csv`, which `diff --counts` compares.
 
-use super::cell_process::{CellJob, PointJob};
+use super::cell_process::CellJob;
 use super::time_limit::{Limits, timed_out};
 use super::{Cell, Progress, Sweep, baseline_folder, process_group};
 use crate::csv_file;
@@ -64,9 +64,7 @@ impl Sweep<'_> {
 /// Counts the instructions of a cell that `program` runs. `Err` says why there is no count.
 fn count(job: &CellJob, program: &Path, limit: Option<Duration>) -> std::result::Result<u64, String> {
     // The process only renders the image: it reads, writes and compares nothing else.
-    let points = job.points.iter().map(|point| PointJob { image: None, ..point.clone() }).collect();
-    let job = CellJob { points, references: None, object: None, trace: None, ..job.clone() };
-    let text = serde_json::to_string(&job).map_err(|e| format!("describing the cell: {e}"))?;
+    let text = serde_json::to_string(&job.alone()).map_err(|e| format!("describing the cell: {e}"))?;
     let mut command = Command::new(COUNTER);
     command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(program).arg("cell");
     let output = process_group::answer(command, &text, limit)

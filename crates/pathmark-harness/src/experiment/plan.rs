@@ -5,6 +5,7 @@
 //! speedup and ignores the overhead of schedules.
 
 use super::cell::Cell;
+use super::pairs::affordable;
 use super::sweep::Sweep;
 use super::{Keep, Reference};
 use crate::error::Result;
@@ -146,12 +147,17 @@ impl Sweep<'_> {
             prices.add_reference(reference, &folder, &mut plan)?;
         }
         let mut images = HashSet::new();
-        for cell in &self.cells {
+        let side_by_side: HashSet<usize> = self.comparisons.groups(self.cells.len()).into_iter().flatten().collect();
+        for (index, cell) in self.cells.iter().enumerate() {
             let repetitions = cell.repetitions(repetitions);
-            plan.rows += cell.points.len() * repetitions as usize;
+            let run_s =
+                if cell.external.is_none() { cell.weight as f64 * prices.sample_s(&cell.settings)? } else { 0.0 };
+            // A process of pairs runs its cell once before it counts.
+            let (runs, before) =
+                if side_by_side.contains(&index) { (affordable(self.pairs()?, run_s), 1) } else { (1, 0) };
+            plan.rows += cell.points.len() * (repetitions * runs) as usize;
             if cell.external.is_none() {
-                let once = cell.weight as f64 * prices.sample_s(&cell.settings)? + ROW_S;
-                plan.cells_s += once * f64::from(repetitions);
+                plan.cells_s += (run_s * f64::from(runs + before) + ROW_S) * f64::from(repetitions);
             }
             if definition.keeps(Keep::Traces) && cell.external.is_none() {
                 plan.bytes +=

@@ -8,7 +8,7 @@ use nix::unistd::{Pid, getpgrp, getpid};
 use std::io::{self, ErrorKind, Read, Write};
 use std::mem::MaybeUninit;
 use std::os::unix::process::CommandExt;
-use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Output, Stdio};
+use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, ExitStatus, Output, Stdio};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
@@ -32,10 +32,15 @@ pub(super) fn answer(mut command: Command, line: &str, limit: Option<Duration>) 
         Err(RecvTimeoutError::Timeout) => Ok(None),
         Err(RecvTimeoutError::Disconnected) => Err(io::Error::other("the thread that listens to it has ended")),
     });
-    // StoppingRule the child has been waited for, its process id is not reused, so no other group can be killed.
-    killpg(own, Signal::SIGKILL).ok();
-    let status = child.wait()?;
+    let status = killed(child)?;
     Ok(heard?.map(|[stdout, stderr]| Output { status, stdout, stderr }))
+}
+
+/// Kills the group of a child and waits for the child.
+pub(super) fn killed(mut child: Child) -> io::Result<ExitStatus> {
+    // Until the child has been waited for, its process id is not reused, so no other group can be killed.
+    killpg(pid(&child), Signal::SIGKILL).ok();
+    child.wait()
 }
 
 /// The streams of a child.
@@ -75,7 +80,7 @@ fn read(stream: Option<impl Read>) -> io::Result<Vec<u8>> {
 }
 
 /// Waits until the child has ended, and leaves its exit status to a later wait.
-fn wait_for_end(child: Pid) -> io::Result<()> {
+pub(super) fn wait_for_end(child: Pid) -> io::Result<()> {
     loop {
         let mut about = MaybeUninit::<libc::siginfo_t>::uninit();
         // SAFETY: `about` has room for what the call writes, and nothing reads it.
@@ -91,7 +96,7 @@ fn wait_for_end(child: Pid) -> io::Result<()> {
     }
 }
 
-fn pid(child: &Child) -> Pid {
+pub(super) fn pid(child: &Child) -> Pid {
     Pid::from_raw(child.id().cast_signed())
 }
 

@@ -4,7 +4,7 @@
 //! of them. Schedules without a common block, such as those of two parts of a sweep, are ranked apart.
 
 use super::Cell;
-use super::cell_diff::{Times, level_of};
+use super::cell_diff::{Times, is_in_pairs, level_of, of_processes, turn};
 use super::definition::Definition;
 use super::profile::Profile;
 use super::records_file::read_records;
@@ -12,9 +12,13 @@ use super::run_file::{MACHINE, read_run_file};
 use super::stopping_rule::MOST_REPETITIONS;
 use super::together::{Schedules, Timed, parts};
 use crate::analysis::Interval;
+use crate::analysis::adjacent_pairs::{by_process, paired_ratio};
 use crate::analysis::confidence_sequence::{Stopping, median_sequence};
 use crate::analysis::quantile::median;
-use crate::analysis::ranking::{groups, least_blocks, may_be_least, order_so_far, told_apart};
+use crate::analysis::ranking::{
+    Turn, groups, least_blocks, may_be_least, may_be_least_in_pairs, order_so_far, ratios_in_pairs, told_apart,
+    told_apart_in_pairs,
+};
 use crate::error::{InputError, Result};
 use crate::input::read_text;
 use crate::lab::Lab;
@@ -97,7 +101,7 @@ pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Rank
             ..Timed::default()
         };
         let own = images.entry(image).or_default().entry(schedule).or_insert_with(role);
-        own.times.insert(row.repetition, seconds);
+        own.times.insert(turn(row), seconds);
     }
     images.retain(|_, schedules| schedules.len() > 1);
     if images.is_empty() {
@@ -171,8 +175,10 @@ fn wanted(lab: &Arc<Lab>, folder: &Path, profile: &str, filters: &[String]) -> R
 /// an interval that holds at every look, and the intervals of all pairs hold together.
 fn orders(times: &[Times], miss: f64, stopping: Stopping) -> BTreeSet<(usize, usize)> {
     if stopping == Stopping::Fixed {
-        return told_apart(times, miss);
+        let in_pairs = times.iter().any(is_in_pairs);
+        return if in_pairs { told_apart_in_pairs(times, miss) } else { told_apart(times, miss) };
     }
+    let times: Vec<Times> = times.iter().map(of_processes).collect();
     let mut told = BTreeSet::new();
     for (a, of_a) in times.iter().enumerate() {
         for (b, of_b) in times.iter().enumerate().take(a) {
@@ -204,7 +210,13 @@ fn least(schedules: usize, miss: f64, stopping: Stopping) -> u32 {
 /// The schedules that are not known to be slower than another, with a miss probability for each comparison.
 fn fastest(schedules: &Schedules, miss: f64, stopping: Stopping) -> Vec<String> {
     let compared = || schedules.iter().filter(|(_, own)| !own.is_shown_only);
-    let is_left = may_be_least(&compared().map(|(_, own)| &own.times).collect::<Vec<_>>(), miss, stopping);
+    let times: Vec<&Times> = compared().map(|(_, own)| &own.times).collect();
+    let is_left = if stopping == Stopping::Fixed && times.iter().any(|times| is_in_pairs(times)) {
+        may_be_least_in_pairs(&times, miss)
+    } else {
+        let times: Vec<Times> = times.into_iter().map(of_processes).collect();
+        may_be_least(&times.iter().collect::<Vec<_>>(), miss, stopping)
+    };
     compared().zip(is_left).filter(|(_, is_left)| *is_left).map(|((name, _), _)| name.clone()).collect()
 }
 
@@ -212,14 +224,14 @@ fn fastest(schedules: &Schedules, miss: f64, stopping: Stopping) -> Vec<String> 
 fn ordered(schedules: &Schedules, is_shown_only: bool) -> Vec<(&String, &Times)> {
     let own =
         || schedules.iter().filter(|(_, own)| own.is_shown_only == is_shown_only).map(|(name, own)| (name, &own.times));
-    let mut blocks: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
-    for (repetition, seconds) in own().flat_map(|(_, times)| times) {
-        blocks.entry(*repetition).or_default().push(*seconds);
+    let mut blocks: BTreeMap<Turn, Vec<f64>> = BTreeMap::new();
+    for (turn, seconds) in own().flat_map(|(_, times)| times) {
+        blocks.entry(*turn).or_default().push(*seconds);
     }
-    let usual: BTreeMap<u32, f64> =
-        blocks.into_iter().filter_map(|(repetition, times)| Some((repetition, median(&times)?))).collect();
+    let usual: BTreeMap<Turn, f64> =
+        blocks.into_iter().filter_map(|(turn, times)| Some((turn, median(&times)?))).collect();
     let score = |times: &Times| {
-        let shares: Vec<f64> = times.iter().map(|(repetition, seconds)| seconds / usual[repetition]).collect();
+        let shares: Vec<f64> = times.iter().map(|(turn, seconds)| seconds / usual[turn]).collect();
         median(&shares).unwrap_or(f64::INFINITY)
     };
     let mut ordered: Vec<(f64, (&String, &Times))> = own().map(|(name, times)| (score(times), (name, times))).collect();
@@ -239,14 +251,20 @@ fn placed(schedules: &Schedules, miss: f64, level: f64, stopping: Stopping) -> V
         }
     }
     let place = |(at, (schedule, own)): (usize, &(&String, &Times))| {
-        let ratios: Vec<f64> = own.iter().filter_map(|(at, seconds)| Some(seconds / first.get(at)?)).collect();
-        let interval = stopping.median_interval(&ratios, level).filter(|interval| at > 0 && interval.level >= level);
+        let ratios = ratios_in_pairs(own, first);
+        let (ratio, interval) = if is_in_pairs(own) && stopping == Stopping::Fixed {
+            let found = paired_ratio(&by_process(ratios), level).map(|found| found.ratio);
+            (if at == 0 { Some(1.0) } else { found.map(|found| found.value) }, found.map(|found| found.interval))
+        } else {
+            let ratios: Vec<f64> = by_process(ratios).iter().filter_map(|own| median(own)).collect();
+            (median(&ratios), stopping.median_interval(&ratios, level))
+        };
         Some(Place {
             schedule: (*schedule).clone(),
             median_s: median(&own.values().copied().collect::<Vec<_>>())?,
-            ratio: median(&ratios),
-            interval,
-            repetitions: own.len(),
+            ratio,
+            interval: interval.filter(|interval| at > 0 && interval.level >= level),
+            repetitions: own.keys().map(|(process, _)| process).collect::<BTreeSet<_>>().len(),
             groups: groups_of[at].clone(),
         })
     };
@@ -263,7 +281,7 @@ mod tests {
     }
 
     fn times(factor: f64) -> Times {
-        (0..9).map(|at| (at, factor * (1.0 + 0.4 * f64::from(at % 3)))).collect()
+        (0..9).map(|at| ((at, None), factor * (1.0 + 0.4 * f64::from(at % 3)))).collect()
     }
 
     /// Two schedules that are faster in turns, and one that always takes twice as long, on a machine whose speed
@@ -271,7 +289,7 @@ mod tests {
     #[test]
     fn the_fastest_come_first_and_those_that_cannot_be_told_apart_share_a_group() {
         let mut b = times(1.0);
-        for (at, seconds) in &mut b {
+        for ((at, _), seconds) in &mut b {
             *seconds *= if at % 2 == 0 { 1.01 } else { 0.99 };
         }
         let schedules = schedules([("a", times(2.0), false), ("b", b, false), ("c", times(1.0), false)]);
@@ -302,7 +320,7 @@ mod tests {
     /// A schedule that shares no repetition with the first one has no ratio, but a place.
     #[test]
     fn every_schedule_has_a_place() {
-        let elsewhere: Times = times(3.0).into_iter().map(|(at, seconds)| (at + 100, seconds)).collect();
+        let elsewhere: Times = times(3.0).into_iter().map(|((at, _), seconds)| ((at + 100, None), seconds)).collect();
         let schedules = schedules([("a", times(1.0), false), ("b", times(1.1), false), ("z", elsewhere, false)]);
         let places = placed(&schedules, 0.05, level_of(2), Stopping::Fixed);
         let ratios: BTreeMap<&str, Option<f64>> = places
@@ -316,7 +334,7 @@ mod tests {
     /// do not (1/32).
     #[test]
     fn the_fastest_is_among_those_that_none_is_faster_than() {
-        let of = |count: u32, factor: f64| (0..count).map(|at| (at, factor)).collect::<Times>();
+        let of = |count: u32, factor: f64| (0..count).map(|at| ((at, None), factor)).collect::<Times>();
         let left = |count: u32, stopping: Stopping| {
             let three = [("a", 1.0), ("b", 1.1), ("c", 2.0)].map(|(name, factor)| (name, of(count, factor), false));
             fastest(&schedules(three), MISS / 2.0, stopping).len()

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 pub(super) const RECORDS: &str = "records.csv";
 
 /// Versions of the columns that can be read. The older ones only lack columns that may be empty.
-const READABLE: [u32; 5] = [7, 8, 9, 10, SCHEMA];
+const READABLE: [u32; 6] = [7, 8, 9, 10, 11, SCHEMA];
 
 /// An open file of records, locked against a second sweep.
 pub struct RecordsFile {
@@ -129,8 +129,9 @@ fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
         if let Some(error) = impossible_time(&record, &row, &times) {
             return Err(error.in_file(&file, line).into());
         }
-        if !seen.insert((record.cell.clone(), record.repetition)) {
-            let problem = format!("occurs twice for repetition {}", record.repetition);
+        if !seen.insert((record.cell.clone(), record.repetition, record.pair)) {
+            let pair = record.pair.map(|pair| format!(", pair {pair}")).unwrap_or_default();
+            let problem = format!("occurs twice for repetition {}{pair}", record.repetition);
             return Err(InputError::new("cell", &record.cell, problem).in_file(&file, line).into());
         }
         records.push(record);
@@ -246,8 +247,14 @@ impl RecordsFile {
     /// Appends a row and waits until it is on the disk. On failure, the file keeps its earlier length, if the disk
     /// allows it.
     pub fn append(&mut self, record: &Record) -> Result<()> {
+        self.append_all(std::slice::from_ref(record))
+    }
+
+    /// The same for several rows: all of them, or none.
+    pub fn append_all(&mut self, records: &[Record]) -> Result<()> {
         self.check_own()?;
-        let outcome = row_bytes(record, self.length == 0).and_then(|bytes| {
+        let each = records.iter().enumerate().map(|(at, record)| row_bytes(record, self.length == 0 && at == 0));
+        let outcome = each.collect::<std::io::Result<Vec<_>>>().map(|rows| rows.concat()).and_then(|bytes| {
             self.file.seek(SeekFrom::Start(self.length))?;
             OnDisk(&self.file).write_all(&bytes)?;
             step(Step::Sync)?;

@@ -1,14 +1,16 @@
 //! A running sweep: runs cells, checks their rows and appends them.
 
 use super::baseline::Baseline;
+use super::comparisons::Comparison;
 use super::drift::Drift;
+use super::pairs::{Contestant, run_pairs};
 use super::records_file::RecordsFile;
-use super::stopping_rule::{Decisions, Goal};
+use super::stopping_rule::{Decisions, Goal, half_width};
 use super::sweep::{Summary, Sweep};
 use super::time_limit::Limits;
 use super::{Cell, CellPoint, HalfFile, Progress, Reference};
 use crate::error::Result;
-use crate::measure::{LeftOut, Record, Settings, TimingConcerns};
+use crate::measure::{LeftOut, Record, SETTINGS, Setting, Settings, TimingConcerns};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::path::PathBuf;
 
@@ -33,6 +35,8 @@ pub(super) struct Running<'a> {
     drift: Drift,
     limits: Limits<'a>,
     lowest_seed: Option<u64>,
+    /// Pairs of a process, where cells run side by side.
+    pairs: u32,
     /// The next row's number, and the next repetition's.
     order: u64,
     repetition: u32,
@@ -48,7 +52,7 @@ impl<'a> Running<'a> {
         references: Vec<(&'a Reference, [HalfFile; 2])>,
         baseline: Option<Baseline>,
         (file, done): (RecordsFile, Vec<Record>),
-        limits: Limits<'a>,
+        (limits, pairs): (Limits<'a>, u32),
         progress: &'a dyn Progress,
     ) -> Self {
         let summary = Summary {
@@ -75,6 +79,7 @@ impl<'a> Running<'a> {
             checksums: HashMap::new(),
             drift: Drift::of(&done),
             limits,
+            pairs,
             lowest_seed: sweep.cells.iter().map(|cell| cell.settings.spec.seed).min(),
             // Failed rows were dropped with their numbers, so the number of rows may be in use already.
             order: done.iter().map(|record| record.run_order + 1).max().unwrap_or(0),
@@ -125,21 +130,66 @@ impl<'a> Running<'a> {
         if !other_first {
             run_baseline()?;
         }
-        self.summary.other_rows += others.len();
-        for other in others {
-            if !other.error.is_empty() {
-                self.summary.add_failure(&other.error);
-                self.progress.note(&format!("{} repetition {repetition}, the other build: {}", cell.id, other.error));
-            }
-            self.decisions.note(&other, false);
-        }
+        self.note_others(&others);
         for ((point, record), _) in cell.points.iter().zip(rows).zip(missing).filter(|(_, is_missing)| *is_missing) {
-            self.add(Record { run_order: self.order, ..record }, &point.image)?;
+            let record = self.checked(record, &point.image);
+            self.file.append(&record)?;
         }
         Ok(())
     }
 
-    fn add(&mut self, record: Record, image: &str) -> Result<()> {
+    /// Runs a process of each of these cells in adjacent pairs: with each other, and with the other build if there is one.
+    pub(super) fn side_by_side(&mut self, members: &[usize], process: u32) -> Result<()> {
+        let cells = &self.sweep.cells;
+        let is_missing = |index: &usize| !self.finished.contains(&(cells[*index].points[0].id.clone(), process));
+        let missing: Vec<usize> = members.iter().copied().filter(is_missing).collect();
+        let job = |index: usize, running: &Self| {
+            let of = (process, running.order);
+            running.sweep.job(&cells[index], of, &running.folder, &running.references, running.lowest_seed)
+        };
+        let own = std::env::current_exe().map_err(|e| format!("finding this program: {e}"));
+        let mut group = Vec::new();
+        for index in &missing {
+            let limit = self.limits.limit(&cells[*index]);
+            group.push(Contestant::new(job(*index, self), own.clone(), limit));
+        }
+        for index in missing.iter().filter(|_| self.baseline.is_some()) {
+            let limit = self.limits.limit(&cells[*index]);
+            let program =
+                self.baseline.as_ref().map(|baseline| baseline.program().to_path_buf()).ok_or_else(String::new);
+            group.push(Contestant::new(Baseline::job(&job(*index, self)), program, limit));
+        }
+        let rows = run_pairs(&mut group, self.pairs, &self.sweep.definition.name, process);
+        drop(group);
+        let (mut owns, mut others, first) = (Vec::new(), Vec::new(), self.order);
+        for (at, record) in rows {
+            match missing.get(at) {
+                Some(index) => owns.push(self.checked(record, &cells[*index].points[0].image)),
+                // Both builds number their rows alike.
+                None => others.push(Record { run_order: first + others.len() as u64, ..record }),
+            }
+        }
+        self.file.append_all(&owns)?;
+        self.note_others(&others);
+        self.baseline.as_mut().map_or(Ok(()), |baseline| baseline.append(&others))
+    }
+
+    /// Records rows of the other build.
+    fn note_others(&mut self, others: &[Record]) {
+        self.summary.other_rows += others.len();
+        for other in others {
+            if !other.error.is_empty() {
+                self.summary.add_failure(&other.error);
+                let Record { cell, repetition, error, .. } = other;
+                self.progress.note(&format!("{cell} repetition {repetition}, the other build: {error}"));
+            }
+            self.decisions.note(other, false);
+        }
+    }
+
+    /// The row with its number and the results of all checks, for the file.
+    fn checked(&mut self, record: Record, image: &str) -> Record {
+        let record = Record { run_order: self.order, ..record };
         let mut record = verified(record, image, &mut self.checksums);
         self.drift.watch(&mut record);
         if !record.error.is_empty() {
@@ -150,14 +200,39 @@ impl<'a> Running<'a> {
             }
         }
         self.summary.left_out.add(&record);
-        self.file.append(&record)?;
         self.summary.invalid += record.invalid_samples.unwrap_or(0);
         self.summary.doubts.add(&record.warnings);
         self.summary.rows += 1;
         self.order += 1;
         self.note(&record);
         self.decisions.note(&record, true);
-        Ok(())
+        record
+    }
+
+    /// The comparisons whose interval is wider than their goal, in words.
+    pub(super) fn missed_goals(&self) -> Option<String> {
+        let (cells, pairs) = (&self.sweep.cells, &self.sweep.comparisons.pairs);
+        let missed = pairs.iter().filter_map(|Comparison { what, with, goal }| {
+            let ([what, with], goal) = ([&cells[*what], &cells[*with]], (*goal)?);
+            let half = self.decisions.paired(&what.id, &with.id).map_or(f64::INFINITY, |found| half_width(&found));
+            (half > goal).then_some((half, goal, what, with))
+        });
+        let mut missed: Vec<_> = missed.collect();
+        missed.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let (half, goal, what, with) = missed.first()?;
+        let width = if half.is_finite() { format!("±{:.1} %", 100.0 * half) } else { "no interval".to_string() };
+        let differing: Vec<&Setting> =
+            SETTINGS.iter().filter(|setting| what.shown(setting) != with.shown(setting)).collect();
+        let told = |cell: &Cell| differing.iter().map(|setting| cell.shown(setting)).collect::<Vec<_>>().join(" ");
+        Some(format!(
+            "{} of {} comparisons missed their precision; the widest is {} over {} on {}: {width} instead of ±{:.1} %",
+            missed.len(),
+            pairs.iter().filter(|pair| pair.goal.is_some()).count(),
+            told(what),
+            told(with),
+            what.settings.scene,
+            100.0 * goal
+        ))
     }
 
     /// The cells for which the goal is not reached yet.
@@ -202,9 +277,23 @@ impl<'a> Running<'a> {
             let beside = serial.and_then(|points| points.iter().find(|other| other.spp == point.spp));
             self.decisions.is_known(&point.id, beside.map(|other| other.id.as_str()), limit)
         };
-        let is_open = |index: usize| cells[index].points.iter().any(|point| !is_decided(index, point));
+        let compared = &self.sweep.comparisons.pairs;
+        let is_side_by_side = |index: usize| compared.iter().any(|pair| pair.what == index || pair.with == index);
+        let has_open_pair = |index: usize| {
+            let own = compared.iter().filter(|pair| pair.what == index || pair.with == index);
+            own.into_iter().any(|pair| {
+                let [what, with] = [pair.what, pair.with].map(|at| cells[at].id.as_str());
+                !self.decisions.is_paired(what, with, limit)
+            })
+        };
+        let is_open = |index: usize| {
+            if self.baseline.is_none() && is_side_by_side(index) {
+                return has_open_pair(index);
+            }
+            cells[index].points.iter().any(|point| !is_decided(index, point))
+        };
         let serial: HashSet<usize> = self.serial.iter().flatten().copied().collect();
-        let serves_only = |index: usize| self.baseline.is_none() && serial.contains(&index);
+        let serves_only = |index: usize| self.baseline.is_none() && serial.contains(&index) && !is_side_by_side(index);
         let open: HashSet<usize> = (0..cells.len()).filter(|index| !serves_only(*index) && is_open(*index)).collect();
         let beside: HashSet<usize> =
             open.iter().filter_map(|own| self.serial[*own]).filter(|own| serves_only(*own)).collect();

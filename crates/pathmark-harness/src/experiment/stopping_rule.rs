@@ -9,17 +9,18 @@
 //! them. Decided cells are left out of later repetitions; serial runs are repeated beside the cells that are compared
 //! with them.
 
-use super::cell_diff::{Change, Judge, Pairing};
+use super::cell_diff::{Change, Judge, Pairing, Times, of_processes, turn};
 use super::diff::parse_share;
 use super::ranking::MISS;
 use super::{Definition, Options};
-use crate::analysis::Interval;
+use crate::analysis::adjacent_pairs::{PairedRatio, by_process, paired_ratio};
 use crate::analysis::confidence_sequence::{Stopping, median_sequence};
 use crate::analysis::quantile::median;
-use crate::analysis::ranking::{may_be_least, order_so_far};
+use crate::analysis::ranking::{may_be_least, order_so_far, ratios_in_pairs};
+use crate::analysis::{Estimate, Interval};
 use crate::error::{InputError, Result};
 use crate::measure::Record;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{HashMap, HashSet};
 use std::time::Duration;
 
 /// Confidence of each interval, as in the figures of an experiment.
@@ -133,10 +134,16 @@ fn share(text: &str) -> Result<f64> {
     Ok(share)
 }
 
+/// Half of a ratio's interval, as a share of the ratio.
+pub(super) fn half_width(found: &PairedRatio) -> f64 {
+    let Estimate { value, interval } = found.ratio;
+    0.5 * (interval.high - interval.low) / value
+}
+
 /// The seconds of both builds so far, by cell and repetition.
 #[derive(Default)]
 pub(super) struct Decisions {
-    times: HashMap<String, [BTreeMap<u32, f64>; 2]>,
+    times: HashMap<String, [Times; 2]>,
     /// Cells with a row that has no time: it failed, or the machine lacks something that the cell needs.
     without_time: HashSet<String>,
 }
@@ -146,7 +153,7 @@ impl Decisions {
     pub(super) fn note(&mut self, record: &Record, is_new: bool) {
         if let Some(seconds) = record.makespan_s.filter(|seconds| record.error.is_empty() && *seconds > 0.0) {
             let times = self.times.entry(record.cell.clone()).or_default();
-            times[usize::from(is_new)].insert(record.repetition, seconds);
+            times[usize::from(is_new)].insert(turn(record), seconds);
         } else {
             self.without_time.insert(record.cell.clone());
         }
@@ -171,11 +178,23 @@ impl Decisions {
             None => own.values().copied().collect(),
             Some(serial) => {
                 let Some(serial) = times(serial) else { return self.without_time.contains(serial) };
-                own.iter().filter_map(|(repetition, own)| Some(serial.get(repetition)? / own)).collect()
+                own.iter().filter_map(|(turn, own)| Some(serial.get(turn)? / own)).collect()
             }
         };
         let width = |(middle, interval): (f64, Interval)| (interval.high - interval.low) / middle;
         median(&values).zip(median_sequence(&values, LEVEL)).is_some_and(|found| width(found) <= 2.0 * limit)
+    }
+
+    /// The ratio of two cells that run side by side.
+    pub(super) fn paired(&self, what: &str, with: &str) -> Option<PairedRatio> {
+        let [[_, what], [_, with]] = [self.times.get(what)?, self.times.get(with)?];
+        paired_ratio(&by_process(ratios_in_pairs(what, with)), LEVEL)
+    }
+
+    /// Whether the ratio of two cells that run side by side is known to within the limit, or cannot be known.
+    pub(super) fn is_paired(&self, what: &str, with: &str, limit: f64) -> bool {
+        let is_without = [what, with].iter().any(|cell| self.without_time.contains(*cell));
+        is_without || self.paired(what, with).is_some_and(|found| half_width(&found) <= limit)
     }
 
     /// Which cells are open, image by image. For the fastest schedule, a cell is open until another one is known to be
@@ -194,20 +213,19 @@ impl Decisions {
 
     /// [`Self::open_schedules`] for one image, with a miss probability for each comparison.
     fn open_of(&self, cells: &[&str], goal: Goal, miss: f64) -> Vec<bool> {
-        let nothing = BTreeMap::new();
-        let times_of = |cell: &str| self.times.get(cell).map_or(&nothing, |[_, new]| new);
-        let (timed, times): (Vec<usize>, Vec<&BTreeMap<u32, f64>>) = cells
+        let times_of = |cell: &str| self.times.get(cell).map_or_else(Times::new, |[_, new]| of_processes(new));
+        let (timed, times): (Vec<usize>, Vec<Times>) = cells
             .iter()
             .enumerate()
             .filter(|(_, cell)| !self.without_time.contains(**cell))
             .map(|(at, cell)| (at, times_of(cell)))
             .unzip();
         let is_open: Vec<bool> = if goal == Goal::Fastest {
-            may_be_least(&times, miss, Stopping::Sequential)
+            may_be_least(&times.iter().collect::<Vec<_>>(), miss, Stopping::Sequential)
         } else {
             let is_open = |own: usize| {
                 let mut others = (0..times.len()).filter(|other| *other != own);
-                others.any(|other| order_so_far(times[own], times[other], miss).is_none())
+                others.any(|other| order_so_far(&times[own], &times[other], miss).is_none())
             };
             (0..times.len()).map(is_open).collect()
         };

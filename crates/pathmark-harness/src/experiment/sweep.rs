@@ -3,9 +3,11 @@
 use super::baseline::{Baseline, baseline_folder, check_program};
 use super::calibration_file::write_calibration;
 use super::cell::trace_file;
+use super::comparisons::Comparisons;
 use super::formula;
 use super::instructions;
 use super::object_pixels::check_object;
+use super::pairs::USUAL_PAIRS;
 use super::processes::{MESSAGES, write_messages};
 use super::records_file::RecordsFile;
 use super::run_file::{RunFile, read_run_file};
@@ -66,13 +68,22 @@ pub struct Sweep<'a> {
     pub(super) cells: Vec<Cell>,
     pub(super) references: Vec<Reference>,
     pub(super) until: Option<StoppingRule>,
+    /// The cells that run side by side.
+    pub(super) comparisons: Comparisons,
 }
 
 impl<'a> Sweep<'a> {
     /// Checks an experiment and adds its files to `files`, the files of the command.
     pub fn new(definition: &'a Definition, options: &'a Options, files: &mut Files) -> Result<Self> {
-        let cells = filtered(&definition.cells(options.profile)?, options)?;
-        let mut cells = options.shard.map_or_else(|| Ok(cells.clone()), |shard| shard.cells(&cells))?;
+        let all = definition.cells(options.profile)?;
+        let compared = Comparisons::of(definition, options.profile, &all)?;
+        compared.check(definition, options.profile)?;
+        let cells = compared.with_partners(&all, &filtered(&all, options)?);
+        let mut cells = match options.shard {
+            Some(shard) => compared.with_partners(&all, &shard.cells(&cells)?),
+            None => cells,
+        };
+        let comparisons = Comparisons::of(definition, options.profile, &cells)?;
         if options.say_how_often() {
             for cell in &mut cells {
                 cell.at_most = None;
@@ -116,13 +127,13 @@ impl<'a> Sweep<'a> {
             files.claims("out", &folder.join(name))?;
         }
         let until = StoppingRule::of(definition, options)?;
-        Ok(Self { definition, options, cells, references, until })
+        Ok(Self { definition, options, cells, references, until, comparisons })
     }
 
     /// Runs the repetitions of cells that have no rows yet. Each repetition visits all cells once, in a different
     /// order.
     pub fn run(&self, progress: &dyn Progress) -> Result<Summary> {
-        let Self { definition, options, cells, references: wanted, until } = self;
+        let Self { definition, options, cells, references: wanted, until, comparisons } = self;
         let folder = options.out.join(&definition.name);
         let run = self.run_file()?;
         let (file, done) = open(definition, options, &run, &folder)?;
@@ -159,8 +170,13 @@ impl<'a> Sweep<'a> {
 
         let repetitions = self.repetitions()?;
         let rows = (file, done);
-        let mut running = Running::new(self, folder, references, baseline, rows, Limits::of(self)?, progress);
+        let mut running =
+            Running::new(self, folder, references, baseline, rows, (Limits::of(self)?, self.pairs()?), progress);
         let total: u64 = cells.iter().map(|cell| cell.weight * u64::from(cell.repetitions(repetitions))).sum();
+        let groups = if other.is_some() { Vec::new() } else { comparisons.groups(cells.len()) };
+        let grouped: HashSet<usize> = groups.iter().flatten().copied().collect();
+        let alone = (0..cells.len()).filter(|index| !grouped.contains(index)).map(|index| vec![index]);
+        let blocks: Vec<Vec<usize>> = alone.chain(groups.iter().cloned()).collect();
         let without_limit = cells.iter().filter(|cell| cell.at_most.is_none()).count();
         let (mut units, begun, mut open) = (0, Instant::now(), without_limit);
         progress.begin(&definition.name, total);
@@ -177,11 +193,16 @@ impl<'a> Sweep<'a> {
                 progress.note(&format!("{} of {without_limit} cells decided", without_limit - open));
             }
             let open_now: HashSet<usize> = undecided.iter().copied().collect();
-            for index in shuffled(cells.len(), &definition.name, repetition) {
-                if open_now.contains(&index) {
-                    running.cell(index, repetition)?;
+            for block in shuffled(blocks.len(), &definition.name, repetition) {
+                let open_of: Vec<usize> =
+                    blocks[block].iter().copied().filter(|index| open_now.contains(index)).collect();
+                match open_of.as_slice() {
+                    [] => {}
+                    [index] if other.is_none() || cells[*index].points.len() > 1 => running.cell(*index, repetition)?,
+                    several => running.side_by_side(several, repetition)?,
                 }
-                units += if repetition < cells[index].repetitions(repetitions) { cells[index].weight } else { 0 };
+                let is_due = |index: &&usize| repetition < cells[**index].repetitions(repetitions);
+                units += blocks[block].iter().filter(is_due).map(|index| cells[*index].weight).sum::<u64>();
                 progress.advance(units);
             }
             if undecided.is_empty() {
@@ -192,11 +213,19 @@ impl<'a> Sweep<'a> {
         if options.rerun_doubtful {
             self.rerun(&mut running, repetitions, progress)?;
         }
+        if let Some(missed) = running.missed_goals() {
+            progress.note(&missed);
+        }
         let summary = running.finish()?;
         if options.count_instructions {
             self.count_instructions(&summary.folder, progress)?;
         }
         Ok(summary)
+    }
+
+    /// The pairs of a process, where cells run side by side.
+    pub(super) fn pairs(&self) -> Result<u32> {
+        Ok(self.definition.pairs(self.options.profile)?.unwrap_or(USUAL_PAIRS))
     }
 
     /// The repetitions of each cell; the largest number, if there is a goal.
@@ -264,6 +293,7 @@ impl<'a> Sweep<'a> {
             object: definition.object().map(str::to_string),
             external: cell.external.clone().map(|external| (external, folder.join("external"))),
             trace: definition.keeps(Keep::Traces).then(trace),
+            stays: false,
         }
     }
 }

@@ -29,6 +29,8 @@ pub(super) struct Table<const PROFILE: bool> {
     pub(super) at_most: Option<u32>,
     pub(super) until: Option<StoppingRule>,
     pub(super) reference_spp: Option<u32>,
+    /// Pairs of a process, where cells are compared.
+    pub(super) pairs: Option<u32>,
     /// The time limit of a profile's cells.
     pub(super) timeout: Option<Timeout>,
 }
@@ -44,6 +46,9 @@ pub(super) const REQUIRED: &[&str] = &["scene", "spp", "strategy", "threads", "d
 
 /// The field of a profile for the time limit of its cells.
 const TIMEOUT: &str = "timeout";
+
+/// The field of a profile for the pairs of a process.
+const PAIRS: &str = "pairs";
 
 /// Default size and repetitions of a profile: the fewest repetitions that allow an interval with 95 % confidence.
 const SIZE: &str = "320x240";
@@ -100,7 +105,7 @@ impl<'de, const PROFILE: bool> Deserialize<'de> for Key<PROFILE> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let name = String::deserialize(deserializer)?;
         let others: &[&str] = if PROFILE {
-            &["repetitions", REFERENCE_SPP, TIMEOUT]
+            &["repetitions", REFERENCE_SPP, TIMEOUT, PAIRS]
         } else {
             &["repetitions", "weak", "curve", "profiles"]
         };
@@ -190,6 +195,7 @@ impl<'de, const PROFILE: bool> Visitor<'de> for TableVisitor<PROFILE> {
                         table.until = Some(StoppingRule::parse(&until, max_time.as_deref()).map_err(M::Error::custom)?);
                     }
                 },
+                (None, PAIRS) => table.pairs = Some(map.next_value::<NonZeroU32>()?.get()),
                 (None, TIMEOUT) => table.timeout = Some(map.next_value()?),
                 (None, _) => table.reference_spp = Some(map.next_value()?),
             }

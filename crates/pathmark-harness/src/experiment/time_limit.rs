@@ -136,6 +136,7 @@ impl<'a> Limits<'a> {
             object: None,
             external: None,
             trace: None,
+            stays: false,
         };
         let row = job.run_in_child(Some(LEAST)).into_iter().next()?;
         let samples = f64::from(kind.spec.width) * f64::from(kind.spec.height) * f64::from(spp);

@@ -38,8 +38,8 @@ impl Joined {
     }
 
     fn join(&mut self, times: &Times) {
-        let Some(first) = times.keys().next().map(|first| self.root(*first)) else { return };
-        for repetition in times.keys() {
+        let Some(first) = times.keys().next().map(|(first, _)| self.root(*first)) else { return };
+        for (repetition, _) in times.keys() {
             let root = self.root(*repetition);
             self.parents.insert(root, first);
         }
@@ -55,7 +55,7 @@ impl Joined {
 pub(super) fn parts(schedules: &Schedules) -> Vec<Schedules> {
     let mut joined = Joined::default();
     schedules.values().filter(|own| !own.is_serial).for_each(|own| joined.join(&own.times));
-    let is_alone = |own: &&Timed| own.is_serial && !own.times.keys().any(|repetition| joined.has(*repetition));
+    let is_alone = |own: &&Timed| own.is_serial && !own.times.keys().any(|(repetition, _)| joined.has(*repetition));
     // Serial schedules that were measured with no other are compared with each other.
     let alone: Vec<&Timed> = schedules.values().filter(is_alone).collect();
     for own in alone {
@@ -64,7 +64,8 @@ pub(super) fn parts(schedules: &Schedules) -> Vec<Schedules> {
     let mut parts: BTreeMap<u32, Schedules> = BTreeMap::new();
     let mut first = HashMap::new();
     for (name, own) in schedules {
-        for (repetition, seconds) in &own.times {
+        for (turn, seconds) in &own.times {
+            let (repetition, _) = turn;
             if !joined.has(*repetition) {
                 continue;
             }
@@ -72,7 +73,7 @@ pub(super) fn parts(schedules: &Schedules) -> Vec<Schedules> {
             let earliest = first.entry(root).or_insert(*repetition);
             *earliest = (*earliest).min(*repetition);
             let role = || Timed { times: Times::new(), ..own.clone() };
-            parts.entry(root).or_default().entry(name.clone()).or_insert_with(role).times.insert(*repetition, *seconds);
+            parts.entry(root).or_default().entry(name.clone()).or_insert_with(role).times.insert(*turn, *seconds);
         }
     }
     let mut parts: Vec<(u32, Schedules)> = parts.into_iter().map(|(root, part)| (first[&root], part)).collect();
@@ -85,7 +86,7 @@ mod tests {
     use super::*;
 
     fn timed(repetitions: &[u32], is_serial: bool) -> Timed {
-        let times = repetitions.iter().map(|at| (*at, 1.0)).collect();
+        let times = repetitions.iter().map(|at| ((*at, None), 1.0)).collect();
         Timed { times, is_serial, is_shown_only: false }
     }
 

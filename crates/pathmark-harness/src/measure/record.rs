@@ -13,7 +13,7 @@ use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 
 /// Version of the columns.
-pub const SCHEMA: u32 = 11;
+pub const SCHEMA: u32 = 12;
 
 settings_list!(columns {
     /// A row. A run that failed is a row too: `error` says why, and columns without a measurement are empty.
@@ -24,7 +24,7 @@ settings_list!(columns {
         pub schema: u32,
         /// Name of the experiment; `render` outside of one.
         pub experiment: String,
-        /// The cell's settings in one word; with `repetition`, unique within an experiment.
+        /// The cell's settings in one word; with `repetition` and `pair`, unique within an experiment.
         pub cell: String,
     }
     settings
@@ -43,8 +43,15 @@ settings_list!(columns {
         /// MPI library, with its version; empty if there was one process.
         #[since(7)]
         pub mpi: String,
-        /// Number of the repetition, from 0.
+        /// Number of the repetition, from 0. Runs that are compared in adjacent pairs are repeated within a process, so this
+        /// is the number of the process.
         pub repetition: u32,
+        /// Number of the pair within the process, from 0; empty if each run had a process of its own.
+        #[since(12)]
+        pub pair: Option<u32>,
+        /// Place in the pair, from 0: how many of the compared cells ran before this one.
+        #[since(12)]
+        pub place: Option<u32>,
         /// Position in the order in which the sweep ran.
         pub run_order: u64,
         /// Number of jobs.
@@ -242,6 +249,17 @@ impl Record {
         self.within_tolerance = errors.within_tolerance;
         self.fireflies = errors.fireflies;
         self
+    }
+
+    /// The errors of its image.
+    pub fn errors(&self) -> Measured {
+        Measured {
+            mse: self.mse,
+            mse_display: self.mse_display,
+            rel_mse: self.rel_mse,
+            within_tolerance: self.within_tolerance,
+            fireflies: self.fireflies,
+        }
     }
 
     /// CPU seconds during the makespan, in the program and in the system.

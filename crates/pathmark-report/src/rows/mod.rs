@@ -5,10 +5,13 @@ pub(crate) mod paired;
 pub(crate) mod schedule;
 
 use crate::analysis::quantile::median;
+use crate::analysis::ranking::Turn;
 use crate::measure::{ImageKey, Record, ScheduleKey};
 use schedule::Schedule;
-use std::collections::BTreeMap;
+use std::collections::hash_map::Entry;
+use std::collections::{BTreeMap, HashMap};
 use std::ops::Deref;
+use std::slice::from_ref;
 
 /// A row that did not fail, with the keys that identify it.
 pub(crate) struct Row {
@@ -17,11 +20,13 @@ pub(crate) struct Row {
     as_written: Option<Box<Record>>,
     pub(crate) image: ImageKey,
     pub(crate) schedule: Schedule,
+    /// The runs of its process in adjacent pairs, if it stands for several.
+    runs: Vec<Self>,
 }
 
 impl Row {
     pub(crate) fn new(record: Record, as_written: Option<Box<Record>>, schedule: Schedule) -> Self {
-        Self { image: record.image_key(), record, as_written, schedule }
+        Self { image: record.image_key(), record, as_written, schedule, runs: Vec::new() }
     }
 
     /// Its columns as they are in the file.
@@ -29,11 +34,16 @@ impl Row {
         self.as_written.as_deref().unwrap_or(&self.record)
     }
 
-    /// The key that rows are paired by: image, schedule and repetition, without the axes that `forget` clears.
-    pub(crate) fn key(&self, forget: impl Fn(&mut ImageKey, &mut ScheduleKey)) -> (ImageKey, ScheduleKey, u32) {
+    /// The key that rows are paired by: image, schedule, and repetition and pair, without the axes that `forget` clears.
+    pub(crate) fn key(&self, forget: impl Fn(&mut ImageKey, &mut ScheduleKey)) -> (ImageKey, ScheduleKey, Turn) {
         let (mut image, mut schedule) = (self.image.clone(), self.schedule.key.clone());
         forget(&mut image, &mut schedule);
-        (image, schedule, self.repetition)
+        (image, schedule, (self.repetition, self.pair))
+    }
+
+    /// Its runs: itself, or all of its process.
+    pub(crate) fn runs(&self) -> &[Self] {
+        if self.runs.is_empty() { from_ref(self) } else { &self.runs }
     }
 }
 
@@ -48,6 +58,34 @@ impl Deref for Row {
     fn deref(&self) -> &Record {
         &self.record
     }
+}
+
+/// One row for each process of a cell: its run of median time. Runs of a process share its memory layout, so they count as
+/// one value wherever they are not compared within their pair.
+pub(crate) fn by_process(rows: Vec<Row>) -> Vec<Row> {
+    let mut places: HashMap<(String, u32), usize> = HashMap::new();
+    let mut processes: Vec<Vec<Row>> = Vec::new();
+    for row in rows {
+        if row.pair.is_none() {
+            processes.push(vec![row]);
+            continue;
+        }
+        match places.entry((row.cell.clone(), row.repetition)) {
+            Entry::Occupied(place) => processes[*place.get()].push(row),
+            Entry::Vacant(place) => {
+                place.insert(processes.len());
+                processes.push(vec![row]);
+            }
+        }
+    }
+    let typical = |runs: Vec<Row>| {
+        let mut order: Vec<usize> = (0..runs.len()).collect();
+        order.sort_by(|a, b| runs[*a].makespan_s.unwrap_or(0.0).total_cmp(&runs[*b].makespan_s.unwrap_or(0.0)));
+        let own = &runs[order[order.len() / 2]];
+        let row = Row::new(own.record.clone(), own.as_written.clone(), own.schedule.clone());
+        if runs.len() == 1 && row.pair.is_none() { row } else { Row { runs, ..row } }
+    };
+    processes.into_iter().map(typical).collect()
 }
 
 /// Rows by a key, in the order of the key.

@@ -1,24 +1,28 @@
 //! Pairs of rows, and the ratios of their values. No other file of the report divides the value of one row by that of
 //! another; `tests/library/pairing.rs` holds this rule.
 //!
-//! Both rows of a pair show one image in one repetition, apart from the axes that the comparison varies. Machine drift
-//! therefore affects both equally, and no image size enters a ratio. Medians of several cells are compared only over
+//! Both rows of a pair show one image in one repetition, apart from the axes that the comparison varies; where cells ran in
+//! adjacent pairs, in one pair of one process. Machine drift therefore affects both equally, and no image size enters a
+//! ratio. Adjacent pairs give an interval over processes ([`paired_ratio`]). Medians of several cells are compared only over
 //! repetitions that these cells share.
 
+use crate::analysis::adjacent_pairs::paired_ratio;
 use crate::analysis::confidence_sequence::Stopping;
+use crate::analysis::quantile::median;
+use crate::analysis::ranking::Turn;
 use crate::analysis::{Estimate, Interval};
 use crate::error::{InputError, Result};
-use crate::estimated::Estimated;
+use crate::estimated::{Estimated, LEVEL};
 use crate::measure::{ImageKey, ScheduleKey};
-use crate::rows::Row;
+use crate::rows::{Row, gathered};
 use crate::words::with_level;
 use std::cmp::Ordering;
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The properties that the rows of a pair share: image and schedule, without the axes that the comparison varies, and
-/// the repetition.
-type Shared = (ImageKey, ScheduleKey, u32);
+/// repetition and pair.
+type Shared = (ImageKey, ScheduleKey, Turn);
 
 /// Clears the axes in which the rows of a pair may differ.
 pub(crate) type Forget = fn(&mut ImageKey, &mut ScheduleKey);
@@ -65,14 +69,14 @@ pub(crate) struct Partners<'a> {
 impl<'a> Partners<'a> {
     /// Rows that the key identifies.
     pub(crate) fn of(rows: impl IntoIterator<Item = &'a Row>, forget: Forget) -> Result<Self> {
-        let rows = identified(rows.into_iter().map(|row| (row.key(forget), row)), alike)?;
+        let rows = identified(runs(rows).map(|row| (row.key(forget), row)), alike)?;
         Ok(Self { forget, rows })
     }
 
     /// Of the rows with one key, the fastest.
     pub(crate) fn fastest(rows: impl IntoIterator<Item = &'a Row>, forget: Forget) -> Self {
         let mut found: BTreeMap<Shared, &Row> = BTreeMap::new();
-        for row in rows.into_iter().filter(|row| row.makespan_s.is_some()) {
+        for row in runs(rows).filter(|row| row.makespan_s.is_some()) {
             let best = found.entry(row.key(forget)).or_insert(row);
             if row.makespan_s < best.makespan_s {
                 *best = row;
@@ -86,8 +90,32 @@ impl<'a> Partners<'a> {
     where
         'a: 'b,
     {
-        Pairs(rows.into_iter().filter_map(|row| Some((row, *self.rows.get(&row.key(self.forget))?))).collect())
+        Pairs(runs(rows).filter_map(|row| Some((row, *self.rows.get(&row.key(self.forget))?))).collect())
     }
+}
+
+/// The runs of rows, each of its own pair.
+fn runs<'a>(rows: impl IntoIterator<Item = &'a Row>) -> impl Iterator<Item = &'a Row> {
+    rows.into_iter().flat_map(Row::runs)
+}
+
+/// The values of each repetition of an image and a schedule: several, if its process ran pairs.
+fn processes<'a>(values: impl IntoIterator<Item = (&'a Shared, &'a f64)>) -> BTreeMap<Shared, Vec<f64>> {
+    let of_process = |((image, schedule, (repetition, _)), value): (&Shared, &f64)| {
+        ((image.clone(), schedule.clone(), (*repetition, None)), *value)
+    };
+    gathered(values.into_iter().map(of_process))
+}
+
+/// The estimate from the values of a cell: over processes if they are of adjacent pairs, and else their median.
+fn estimated<'a>(values: impl IntoIterator<Item = (&'a Shared, &'a f64)>, stopping: Stopping) -> Option<Estimated> {
+    let values: Vec<(&Shared, &f64)> = values.into_iter().collect();
+    let is_in_pairs = values.iter().any(|((_, _, (_, pair)), _)| pair.is_some());
+    let own: Vec<Vec<f64>> = processes(values).into_values().collect();
+    if let Some(found) = paired_ratio(&own, LEVEL).filter(|_| is_in_pairs && stopping == Stopping::Fixed) {
+        return Some(Estimated { count: Some(found.processes), ..found.ratio.into() });
+    }
+    Estimated::median(&own.iter().filter_map(|own| median(own)).collect::<Vec<f64>>(), stopping)
 }
 
 fn alike(row: &Row, other: &Row) -> InputError {
@@ -138,7 +166,7 @@ impl Repeats {
 
     /// A value of each row, by its own image, schedule and repetition.
     pub(crate) fn of_rows<'a>(rows: impl IntoIterator<Item = &'a Row>, value: impl Fn(&Row) -> Option<f64>) -> Self {
-        Self(rows.into_iter().filter_map(|row| Some((row.key(|_, _| ()), value(row)?))).collect())
+        Self(runs(rows).filter_map(|row| Some((row.key(|_, _| ()), value(row)?))).collect())
     }
 
     /// The mean value of the rows that share a key.
@@ -148,7 +176,7 @@ impl Repeats {
         value: impl Fn(&Row) -> Option<f64>,
     ) -> Self {
         let mut sums: BTreeMap<Shared, (f64, f64)> = BTreeMap::new();
-        for (key, value) in rows.into_iter().filter_map(|row| Some((row.key(forget), value(row)?))) {
+        for (key, value) in runs(rows).filter_map(|row| Some((row.key(forget), value(row)?))) {
             let (sum, count) = sums.entry(key).or_default();
             (*sum, *count) = (*sum + value, *count + 1.0);
         }
@@ -164,7 +192,7 @@ impl Repeats {
         let place = |row: &Row| {
             let mut image = row.image.clone();
             forget(&mut image);
-            (image, ScheduleKey::default(), 0)
+            (image, ScheduleKey::default(), (0, None))
         };
         Self(rows.into_iter().filter_map(|row| Some((place(row), value(row)?))).collect())
     }
@@ -188,13 +216,14 @@ impl Repeats {
         self.0.is_empty()
     }
 
+    /// A value of each repetition: the median of its pairs, if it has several.
     pub(crate) fn values(&self) -> Vec<f64> {
-        self.0.values().copied().collect()
+        processes(&self.0).values().filter_map(|own| median(own)).collect()
     }
 
     /// The median over all repetitions of this cell.
     pub(crate) fn median(&self, stopping: Stopping) -> Option<Estimated> {
-        Estimated::median(&self.values(), stopping)
+        estimated(&self.0, stopping)
     }
 
     /// The images, without their seeds: values of other images are not compared with these.
@@ -320,13 +349,13 @@ fn compared<T, L: Ord>(cells: Vec<(T, Repeats)>, lines: &[L], stopping: Stopping
     let mut found: Vec<Option<Estimated>> = vec![None; cells.len()];
     for indices in peers(&images, lines) {
         let is_of_one = indices.iter().all(|index| images[*index] == images[indices[0]]);
-        let place = |(image, _, repetition): &Shared| {
+        let place = |(image, _, (repetition, _)): &Shared| {
             let of_any = || ImageKey { seed: image.seed, ..ImageKey::default() };
             (if is_of_one { image.clone() } else { of_any() }, *repetition)
         };
         let places = indices.iter().map(|index| {
             let mut counts: BTreeMap<Place, usize> = BTreeMap::new();
-            cells[*index].1.0.keys().for_each(|key| *counts.entry(place(key)).or_default() += 1);
+            processes(&cells[*index].1.0).keys().for_each(|key| *counts.entry(place(key)).or_default() += 1);
             // A round counts if each image of the cell has it.
             let whole = if is_of_one { 1 } else { counts.values().copied().max().unwrap_or(0) };
             counts.into_iter().filter(|(_, count)| *count >= whole).map(|(place, _)| place).collect()
@@ -336,7 +365,7 @@ fn compared<T, L: Ord>(cells: Vec<(T, Repeats)>, lines: &[L], stopping: Stopping
         for (index, own) in indices.iter().zip(&places) {
             let is_partial = !block.is_subset(own);
             let values = cells[*index].1.0.iter().filter(|(key, _)| is_partial || block.contains(&place(key)));
-            let told = Estimated::median(&values.map(|(_, value)| *value).collect::<Vec<f64>>(), stopping);
+            let told = estimated(values, stopping);
             found[*index] = told.map(|told| Estimated { is_partial, ..told });
         }
     }
@@ -398,11 +427,12 @@ fn common(places: &[BTreeSet<Place>]) -> BTreeSet<Place> {
 
 /// The values of cells in the seeds and repetitions that all of them have, for one fit through all of them.
 pub(crate) fn in_common<T>(cells: Vec<(T, Repeats)>) -> Vec<(T, Vec<f64>)> {
-    let round = |(image, _, repetition): &Shared| (image.seed, *repetition);
+    let round = |(image, _, (repetition, _)): &Shared| (image.seed, *repetition);
     let rounds = cells.iter().map(|(_, repeats)| repeats.0.keys().map(round).collect::<BTreeSet<_>>());
     let common = rounds.reduce(|all, own| all.intersection(&own).copied().collect()).unwrap_or_default();
     let values = |repeats: Repeats| {
-        repeats.0.into_iter().filter(|(key, _)| common.contains(&round(key))).map(|(_, value)| value).collect()
+        let own = repeats.0.iter().filter(|(key, _)| common.contains(&round(key)));
+        processes(own).values().filter_map(|own| median(own)).collect()
     };
     cells.into_iter().map(|(thing, repeats)| (thing, values(repeats))).collect()
 }

@@ -1,0 +1,139 @@
+//! Comparisons: which cells of an experiment run side by side.
+//!
+//! ```toml
+//! [[compare]]
+//! what = { effects = ["lens", "fog"] }   # optional: all cells
+//! with = { effects = ["smallpt"] }
+//! goal = "1 %"                           # optional: half of the interval that the ratio should have
+//! ```
+//!
+//! Each cell that `what` selects is compared with those that `with` selects and that agree with it in every setting of the
+//! image that the entry does not name. Cells that are connected by comparisons form a group.
+
+use super::diff::parse_share;
+use super::{Cell, Definition, Profile};
+use crate::error::{Error, InputError, Result};
+use crate::measure::SETTINGS;
+use serde::Deserialize;
+use std::collections::{BTreeMap, HashSet};
+
+/// An entry of an experiment.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Compare {
+    #[serde(default)]
+    what: Selection,
+    with: Selection,
+    goal: Option<String>,
+}
+
+/// Settings, each with the values that a cell may have.
+type Selection = BTreeMap<String, Vec<toml::Value>>;
+
+/// A comparison of two cells, by their places in the list of cells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Comparison {
+    pub(super) what: usize,
+    pub(super) with: usize,
+    /// Half of the interval that the ratio of times should have, as a share of the ratio.
+    pub(super) goal: Option<f64>,
+}
+
+/// The comparisons of an experiment's cells.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Comparisons {
+    pub(super) pairs: Vec<Comparison>,
+}
+
+fn matches(selection: &Selection, cell: &Cell) -> Result<bool> {
+    let word = |value: &toml::Value| value.as_str().map_or_else(|| value.to_string(), str::to_string);
+    for (name, values) in selection {
+        let values: Vec<String> = values.iter().map(word).collect();
+        if !cell.matches(&format!("{name}={}", values.join(",")))? {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+impl Comparisons {
+    /// The comparisons of these cells; curves are never compared.
+    pub(super) fn of(definition: &Definition, profile: Profile, cells: &[Cell]) -> Result<Self> {
+        let mut pairs: Vec<Comparison> = Vec::new();
+        for entry in &definition.compare {
+            let located = |error| match error {
+                Error::Input(input) => definition.located(profile, *input),
+                other => other,
+            };
+            let goal = entry.goal.as_deref().map(|text| parse_share("goal", &text.replace(' ', ""))).transpose();
+            let goal = goal.map_err(located)?;
+            let named = |name: &str| entry.what.contains_key(name) || entry.with.contains_key(name);
+            let shared: Vec<_> =
+                SETTINGS.iter().filter(|setting| setting.changes_image && !named(setting.name)).collect();
+            let image = |cell: &Cell| shared.iter().map(|setting| cell.shown(setting)).collect::<Vec<String>>();
+            let selected = |selection: &Selection| -> Result<Vec<(usize, Vec<String>)>> {
+                let mut found = Vec::new();
+                for (index, cell) in cells.iter().enumerate().filter(|(_, cell)| cell.points.len() == 1) {
+                    if matches(selection, cell)? {
+                        found.push((index, image(cell)));
+                    }
+                }
+                Ok(found)
+            };
+            let (what, with) = (selected(&entry.what).map_err(located)?, selected(&entry.with).map_err(located)?);
+            let mut by_image: BTreeMap<&[String], Vec<usize>> = BTreeMap::new();
+            for (index, image) in &with {
+                by_image.entry(image).or_default().push(*index);
+            }
+            let is_new = |pairs: &[Comparison], own: usize, other: usize| {
+                let same = |pair: &Comparison| {
+                    [pair.what, pair.with] == [own, other] || [pair.with, pair.what] == [own, other]
+                };
+                own != other && !pairs.iter().any(same)
+            };
+            for (own, image) in &what {
+                for other in by_image.get(image.as_slice()).into_iter().flatten() {
+                    if is_new(&pairs, *own, *other) {
+                        pairs.push(Comparison { what: *own, with: *other, goal });
+                    }
+                }
+            }
+        }
+        Ok(Self { pairs })
+    }
+
+    /// Refuses entries by which no cell is compared, in a sweep of all cells.
+    pub(super) fn check(&self, definition: &Definition, profile: Profile) -> Result<()> {
+        if self.pairs.is_empty() && !definition.compare.is_empty() {
+            let error = InputError::new("compare", "", "selects no two cells of one image");
+            return Err(definition.located(profile, error.allowed("values that cells of the matrix have")));
+        }
+        Ok(())
+    }
+
+    /// The chosen cells, and those with which they are compared, in the order of all cells.
+    pub(super) fn with_partners(&self, all: &[Cell], chosen: &[Cell]) -> Vec<Cell> {
+        let ids: HashSet<&str> = chosen.iter().map(|cell| cell.id.as_str()).collect();
+        let is_chosen = |index: usize| ids.contains(all[index].id.as_str());
+        let partners: HashSet<usize> =
+            self.pairs.iter().filter(|pair| is_chosen(pair.what)).map(|pair| pair.with).collect();
+        let wanted = (0..all.len()).filter(|index| is_chosen(*index) || partners.contains(index));
+        wanted.map(|index| all[index].clone()).collect()
+    }
+
+    /// The groups of cells that are connected by comparisons, each in the order of the cells.
+    pub(super) fn groups(&self, cells: usize) -> Vec<Vec<usize>> {
+        let mut group_of: Vec<usize> = (0..cells).collect();
+        for pair in &self.pairs {
+            let (own, other) = (group_of[pair.what], group_of[pair.with]);
+            group_of.iter_mut().filter(|group| **group == other).for_each(|group| *group = own);
+        }
+        let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (index, group) in group_of.into_iter().enumerate() {
+            groups.entry(group).or_default().push(index);
+        }
+        let mut groups: Vec<Vec<usize>> = groups.into_values().filter(|group| group.len() > 1).collect();
+        groups.sort();
+        groups
+    }
+}
