@@ -17,13 +17,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-/// The folder of the other build's rows, inside the folder of results.
 const FOLDER: &str = "baseline";
 
 /// The time in which a program prints its help. A program of another kind may run for ever.
 const HELP: Duration = Duration::from_mins(1);
 
-/// The other build, and the files for its rows.
 pub(super) struct Baseline {
     program: PathBuf,
     folder: PathBuf,
@@ -32,7 +30,6 @@ pub(super) struct Baseline {
     has_rows: bool,
 }
 
-/// The folder of the other build's rows of an experiment.
 pub fn baseline_folder(out: &Path, name: &str) -> PathBuf {
     out.join(FOLDER).join(name)
 }
@@ -77,13 +74,12 @@ impl Baseline {
         Ok(Self { program, folder, run, file, has_rows: false })
     }
 
-    /// Runs a repetition of a cell; returns its rows.
     pub(super) fn run(&mut self, job: &CellJob, limit: Option<Duration>) -> Result<Vec<Record>> {
         // Images and traces are kept of this build only.
         let points = job.points.iter().map(|point| PointJob { image: None, ..point.clone() }).collect();
         let job = CellJob { points, trace: None, ..job.clone() };
         let mut rows = Vec::new();
-        for record in job.run_in_child_of(Ok(self.program.clone()), limit) {
+        for record in job.run_in_child(Some(self.program.as_path()), limit) {
             let record = Record { run_order: job.order, ..record };
             if !self.has_rows {
                 // The rows say which build measured them.
