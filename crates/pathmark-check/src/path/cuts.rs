@@ -3,7 +3,7 @@
 use crate::estimator::ESTIMATORS;
 use crate::exact::{Bench, arriving_estimators, critical, full_estimators, mean, run};
 use crate::kernel::{KERNELS, Spec};
-use crate::measure::{Measured, Record, Settings, Setup, Warning};
+use crate::measure::{Record, Settings, Setup, Warning};
 use crate::scene::{Scene, load};
 use crate::stage::{camera, diffuse, object, scene, sphere};
 use crate::{Case, Trials};
@@ -53,7 +53,7 @@ fn on_record(trials: &mut Trials) {
             let outcome = setup.run(None).expect("a render");
             let is_warned = outcome.warnings.contains(&Warning::Biased);
             let is_cut = outcome.counts.truncated > 0;
-            let record = Record::new(&setup, &outcome, Measured::default());
+            let record = Record::new(&setup, &outcome);
             let depth = max_depth.or(entry.max_depth);
             trials.same(
                 format!("{max_depth:?}, {}: depth on record, biased, warned, cut", entry.name),

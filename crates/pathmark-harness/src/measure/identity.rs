@@ -31,7 +31,6 @@ fn used(spec: Spec, choice: &RenderOptions) -> Spec {
 }
 
 impl Setup {
-    /// The settings that it really uses, not the requested ones.
     fn used(&self) -> Settings {
         let settings = self.settings().clone();
         let spec = match self.scene() {
@@ -41,7 +40,6 @@ impl Setup {
         Settings { scene: self.name().to_string(), threads: self.threads(), spec, ..settings }
     }
 
-    /// The identity of its image.
     pub fn image_key(&self) -> ImageKey {
         ImageKey { scene_hash: self.hash(), ..ImageKey::of(&self.used()) }
     }
@@ -52,7 +50,6 @@ impl Setup {
         ScheduleKey { kernel_fallback: fallback.unwrap_or_default(), ..ScheduleKey::of(&self.used()) }
     }
 
-    /// The key of the film that it will render.
     pub fn film_key(&self) -> FilmKey {
         FilmKey::of(self.image_key())
     }
