@@ -290,8 +290,8 @@ mod tests {
             choose_among(&scene, &spec, lab.kernel_tables()).map_err(|error| error.to_string())
         };
         let choice = chosen("picky").unwrap();
-        assert_eq!((choice.kernel(), choice.fallback()), ("scalar", "everything"));
-        assert_eq!(chosen("scalar").unwrap().fallback(), "");
+        assert_eq!((choice.plan.name(), choice.fallback), ("scalar", "everything"));
+        assert_eq!(chosen("scalar").unwrap().fallback, "");
         for unknown in ["pick", "picky:1"] {
             let error = chosen(unknown).err().unwrap();
             assert!(error.contains("lanes, scalar, ") && error.contains(", picky"), "{error}");

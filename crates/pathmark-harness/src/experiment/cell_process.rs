@@ -183,7 +183,7 @@ impl CellJob {
     /// with a GPU.
     fn without_device(&self, lab: &Lab) -> Result<Option<Vec<Record>>> {
         let setup = self.setup(lab, self.settings.spp)?;
-        let is_without = setup.scene().is_some_and(|(_, choice)| choice.lacks_device());
+        let is_without = setup.scene().is_some_and(|(_, choice)| choice.plan.lacks_device());
         let row = |point: &PointJob| self.left_out(point, &setup, &Warning::NoDevice);
         Ok(is_without.then(|| self.points.iter().map(row).collect()))
     }

@@ -88,7 +88,7 @@ impl<'a> Prices<'a> {
         let fewest = with(spp)?.fewest_spp();
         let setup = with(fewest)?;
         // Without the GPU that it needs, a cell renders nothing.
-        if setup.scene().is_some_and(|(_, choice)| choice.lacks_device()) {
+        if setup.scene().is_some_and(|(_, choice)| choice.plan.lacks_device()) {
             return Ok(0.0);
         }
         // The first run of a setup builds its kernel, and the first of a process is slower than the rest.

@@ -14,18 +14,18 @@ fn distance(value: f64) -> String {
 /// The specification with the values that the choice really uses.
 fn used(spec: Spec, choice: &RenderOptions) -> Spec {
     Spec {
-        estimator: choice.estimator().name.to_string(),
+        estimator: choice.estimator.name.to_string(),
         max_depth: choice.depth(),
         camera_rays: Some(choice.camera_rays()).filter(|rays| *rays > 1),
         roulette: choice.roulette().map(|rule| rule.to_string()),
-        clamp: choice.clamp().map(|clamp| clamp.to_string()),
-        filter: choice.filter().map(Filter::name).map(str::to_string),
-        epsilon: choice.epsilon().map(distance),
-        precision: choice.precision().name().to_string(),
-        kernel: choice.kernel().to_string(),
-        simd: Some(choice.simd().to_string()),
+        clamp: choice.clamp.map(|clamp| clamp.to_string()),
+        filter: choice.filter.map(Filter::name).map(str::to_string),
+        epsilon: choice.epsilon.map(distance),
+        precision: choice.plan.precision().name().to_string(),
+        kernel: choice.plan.name().to_string(),
+        simd: Some(choice.plan.simd().to_string()),
         effects: Some(choice.effects().to_string()),
-        accelerator: Some(choice.accelerator().to_string()),
+        accelerator: Some(choice.accelerator.name.to_string()),
         ..spec
     }
 }
@@ -46,7 +46,7 @@ impl Setup {
 
     /// The identity of its schedule among those of the same image.
     pub fn schedule_key(&self) -> ScheduleKey {
-        let fallback = self.scene().map(|(_, choice)| choice.fallback().to_string());
+        let fallback = self.scene().map(|(_, choice)| choice.fallback.to_string());
         ScheduleKey { kernel_fallback: fallback.unwrap_or_default(), ..ScheduleKey::of(&self.used()) }
     }
 

@@ -61,7 +61,7 @@ impl Subject {
     }
 
     fn spp_multiple(&self) -> u32 {
-        self.choice().map_or(1, |choice| choice.estimator().spp_multiple)
+        self.choice().map_or(1, |choice| choice.estimator.spp_multiple)
     }
 
     fn kernel(&self, spec: &Spec) -> Result<Box<dyn Kernel>> {
@@ -125,7 +125,7 @@ impl Setup {
                 .allowed(names.join(", "))
                 .into());
         };
-        let clamp = subject.choice().and_then(RenderOptions::clamp);
+        let clamp = subject.choice().and_then(|choice| choice.clamp);
         if clamp.is_some_and(|clamp| clamp.what == Clamped::Subpixel) && decomposition.splits_samples() {
             let problem = "cannot be combined with the subpixel clamp, which needs all samples of a pixel at once";
             return Err(InputError::new("decomposition", &settings.decomposition, problem).into());
@@ -282,7 +282,7 @@ impl Setup {
 
     /// Whether the film's checksum is meaningful: the sampler draws the same random numbers each time.
     pub fn is_deterministic(&self) -> bool {
-        self.scene().is_none_or(|(_, choice)| choice.sampler().deterministic)
+        self.scene().is_none_or(|(_, choice)| choice.sampler.deterministic)
     }
 
     pub fn strategy(&self) -> &strategy::Entry {
@@ -321,7 +321,7 @@ impl Setup {
         }
         let processors = available_threads();
         // Workers that serve devices wait for them.
-        let waiting = self.subject.choice().map_or(0, RenderOptions::devices_beside);
+        let waiting = self.subject.choice().map_or(0, |choice| choice.plan.devices_beside());
         if workers_used as usize > processors + waiting {
             warnings.push(Warning::Oversubscribed { workers: workers_used, processors });
         }

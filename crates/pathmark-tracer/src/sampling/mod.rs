@@ -17,6 +17,8 @@ mod per_thread;
 pub mod sobol;
 #[doc(hidden)]
 mod stratified;
+#[cfg(test)]
+mod tests;
 mod warp;
 
 pub use crate::math::unit;
@@ -51,7 +53,6 @@ pub enum Purpose {
     Film = 0,
     /// The scattered direction at a surface, and the choice between its lobes.
     Bsdf = 1,
-    /// Russian roulette.
     Roulette = 2,
     /// The position on the camera's lens.
     Lens = 3,
@@ -63,7 +64,6 @@ pub enum Purpose {
 }
 
 impl Purpose {
-    /// All purposes.
     pub const ALL: [Self; 7] =
         [Self::Film, Self::Bsdf, Self::Roulette, Self::Lens, Self::Medium, Self::Light, Self::LightChoice];
 }
