@@ -49,11 +49,9 @@ pub struct Calibration {
     pub comparisons: usize,
     /// Expected number of misses, by the levels.
     pub expected: f64,
-    /// Number of misses found.
     pub found: usize,
     /// Two-sided: twice the probability of a number of misses at least as extreme on the same side, at most 1.
     pub p_value: f64,
-    /// The verdict at the requested significance.
     pub verdict: Verdict,
 }
 

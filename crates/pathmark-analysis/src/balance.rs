@@ -15,9 +15,7 @@ pub type Span = (usize, f64, f64);
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Share {
     pub jobs: usize,
-    /// Seconds in jobs.
     pub busy_s: f64,
-    /// Seconds before and between its jobs.
     pub gap_s: f64,
     /// Seconds from its last job's end to the makespan; all of it for a worker without a job.
     pub tail_s: f64,
@@ -26,9 +24,7 @@ pub struct Share {
 /// The time of all workers, by its use.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Balance {
-    /// From the run's start to its end, in seconds.
     pub makespan_s: f64,
-    /// Each worker's share, in the order of their numbers.
     pub workers: Vec<Share>,
 }
 

@@ -15,9 +15,7 @@ pub struct Line {
     pub intercept: Estimate,
     /// Unit of y per unit of x.
     pub slope: Estimate,
-    /// Standard error of the intercept.
     pub intercept_error: f64,
-    /// Standard error of the slope.
     pub slope_error: f64,
     /// Share of the variance of y that the line explains, in [0, 1]; 1 if y has none.
     pub r_squared: f64,

@@ -40,11 +40,9 @@ pub enum Metg {
     Below(f64),
     /// Even the largest jobs measured, of this many seconds, do not reach it.
     Above(f64),
-    /// METG is undefined.
     Undefined(Undefined),
 }
 
-/// Reason for an undefined METG.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Undefined {

@@ -38,7 +38,6 @@ pub struct SeedError {
     pub mse: Estimate,
     /// The square root of that mean, and of its interval's ends.
     pub rmse: Estimate,
-    /// The method of the interval.
     pub method: Method,
     /// Standard deviation of the seeds' squared errors over their mean.
     pub variation: f64,

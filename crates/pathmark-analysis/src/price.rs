@@ -110,15 +110,12 @@ struct Tangent {
 /// A renderer of one scene, as far as prices need it: the error over samples, and the time per sample.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Renderer {
-    /// Error curves of several seeds.
     pub curves: SeedCurves,
-    /// How the curves continue beyond their points.
     pub law: Law,
     /// Seconds for one sample in every pixel.
     pub seconds_per_spp: Estimate,
 }
 
-/// The price of one accuracy.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Price {
     /// The goal.

@@ -21,11 +21,9 @@ pub struct Evidence {
     pub warnings: usize,
     /// Logical processors of the machine.
     pub processors: Option<usize>,
-    /// Physical cores of the machine.
     pub physical_cores: Option<usize>,
 }
 
-/// The likely cause.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Cause {

@@ -24,11 +24,9 @@ pub(super) struct Contender {
     /// The image that it renders, without samples and seed.
     pub(super) image: ImageKey,
     pub(super) schedule: ScheduleKey,
-    /// Its kernel, in words.
     pub(super) kernel: String,
     /// Its points, by samples per pixel.
     pub(super) points: Vec<CostPoint>,
-    /// Its prices are computed from this.
     pub(super) renderer: Renderer,
     /// The error curve of each seed, and its seconds per sample in every pixel.
     seeds: Vec<(Curve, f64)>,

@@ -122,17 +122,12 @@ pub fn rank_prediction_blocks(predictions: &[RankPrediction]) -> Vec<Block> {
 
 /// The cases of a forecast of ranks.
 pub struct RankPlan<'a> {
-    /// Rules between ranks.
     pub rules: &'a [RankRule],
     /// The strategies within a rank that has several threads.
     pub strategies: &'a [String],
-    /// Numbers of ranks.
     pub ranks: &'a [usize],
-    /// Numbers of threads of a rank.
     pub threads: &'a [usize],
-    /// Costs of messages.
     pub messages: Messages,
-    /// The processors of each rank.
     pub hardware: Hardware,
 }
 

@@ -21,11 +21,9 @@ pub struct Results {
     pub definition: Definition,
     /// Command and machine.
     pub run: RunFile,
-    /// Rows that failed.
     pub failed: Vec<Record>,
     /// Rows that were not run, because the machine lacked what they need.
     pub left_out: LeftOut,
-    /// The experiment's folder.
     pub folder: PathBuf,
     /// The folder that holds all experiments and the references.
     pub out: PathBuf,
@@ -116,7 +114,6 @@ impl Results {
         Self::typical(&rows).map_or(Ok(None), |row| self.trace(row))
     }
 
-    /// The profile that was run.
     pub fn profile(&self) -> Profile {
         Profile::from_name(&self.run.profile).unwrap_or(Profile::Quick)
     }
@@ -142,7 +139,6 @@ impl Results {
         self.run.machine.line()
     }
 
-    /// Processors of the machine.
     pub(super) fn processors(&self) -> usize {
         self.run.machine.processors
     }

@@ -38,7 +38,6 @@ pub(super) fn without_pieces(_: &mut ImageKey, schedule: &mut ScheduleKey) {
 }
 
 impl Results {
-    /// The schedules paired with the serial runs.
     pub(super) fn serial(&self) -> Result<Serial<'_>> {
         Serial::of(self)
     }
@@ -61,7 +60,6 @@ impl<'a> Serial<'a> {
         })
     }
 
-    /// All schedules except the serial ones.
     pub(super) fn others(&self) -> impl Iterator<Item = &'a Schedule> {
         self.schedules.keys().copied().filter(|schedule| !schedule.is_serial())
     }

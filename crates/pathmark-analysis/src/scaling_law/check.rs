@@ -18,17 +18,12 @@ pub const SIGNIFICANCE: f64 = 0.05;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Check {
-    /// The scatter of the repetitions explains the residuals.
-    Passed {
-        /// Probability of residuals at least this large if the law holds.
-        p_value: f64,
-    },
+    /// The scatter of the repetitions explains the residuals. `p_value` is the probability of residuals at least this
+    /// large if the law holds.
+    Passed { p_value: f64 },
     /// The residuals are larger than the scatter explains: the law does not describe the points, whatever its
     /// parameters are.
-    Rejected {
-        /// Probability of residuals at least this large if the law holds.
-        p_value: f64,
-    },
+    Rejected { p_value: f64 },
     /// The law has as many parameters as there are worker counts, so the curve passes through every point.
     NotPossible,
 }

@@ -35,7 +35,6 @@ pub use reason::Reason;
 /// Workers p and the speedup of each repetition.
 pub type Point = (usize, Vec<f64>);
 
-/// A law of speedup.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Law {
@@ -47,7 +46,6 @@ pub enum Law {
     Universal,
 }
 
-/// A parameter of a law.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Parameter {
     pub name: &'static str,
@@ -70,11 +68,9 @@ pub struct Fitted {
     pub worker_counts: usize,
 }
 
-/// The outcome of a fit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fit {
-    /// A law with its parameters.
     Found(Fitted),
     /// The parameters can't be identified, for this reason.
     Unidentifiable(Reason),

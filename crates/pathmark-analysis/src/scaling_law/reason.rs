@@ -13,26 +13,15 @@ pub enum Reason {
     /// A speedup that is not positive and finite, or no worker at all.
     NotASpeedup,
     /// Too few different numbers of workers above 1.
-    TooFewWorkerCounts {
-        /// The number of worker counts found.
-        found: usize,
-        /// The number that the law needs.
-        needed: usize,
-    },
+    TooFewWorkerCounts { found: usize, needed: usize },
     /// Fewer than two repetitions at some number of workers.
     TooFewRepetitions,
     /// All repetitions are equal, so they don't show their scatter.
     NoSpread,
     /// The interval of a parameter covers all values that the law allows.
     Open { parameter: Parameter },
-    /// The estimate of a parameter lies outside the range that the law allows.
-    OutOfRange {
-        parameter: Parameter,
-        /// The smallest value allowed.
-        low: f64,
-        /// The largest value allowed, or infinity.
-        high: f64,
-    },
+    /// The estimate of a parameter lies outside the range that the law allows, which may end in infinity.
+    OutOfRange { parameter: Parameter, low: f64, high: f64 },
 }
 
 impl fmt::Display for Reason {

@@ -91,7 +91,6 @@ pub(super) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     failed(&problems)
 }
 
-/// Compares counts instead of times.
 fn counts(arguments: &Arguments, limit: f64, console: &Console) -> Result<()> {
     let found = count_diff(&arguments.old, &arguments.new)?;
     let all = || found.experiments.iter().flat_map(|(_, diffs)| &diffs.changed);

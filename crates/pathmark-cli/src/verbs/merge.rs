@@ -50,7 +50,6 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     }
 }
 
-/// Merges the rows of sweeps from the folders of their parts.
 fn sweeps(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     arguments.strict.refuse("applies to parts of an image; a sweep checks its rows when it measures them")?;
     let merged = merge_sweeps(&arguments.parts, &arguments.output, arguments.partial, &command_line())?;
@@ -77,7 +76,6 @@ fn sweeps(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()
     print(&lines.join("\n"))
 }
 
-/// Merges one image from the files of its parts.
 fn image(arguments: &Arguments, console: &Console) -> Result<()> {
     let Arguments { parts, output, partial, .. } = arguments;
     let as_film = is_film(output);

@@ -82,7 +82,6 @@ pub(super) enum Verb {
 }
 
 impl Verb {
-    /// Runs it.
     pub(super) fn run(self, lab: &Arc<Lab>, console: &Console) -> Result<()> {
         match self {
             Self::Reproduce(arguments) => reproduce::run(&arguments, lab, console),

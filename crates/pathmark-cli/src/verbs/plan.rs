@@ -5,7 +5,6 @@ use crate::error::Result;
 use crate::experiment::{Plan, Prices, Sweep};
 use crate::lab::Lab;
 
-/// The plans of all sweeps, and how they were made.
 pub(super) struct Plans {
     pub(super) each: Vec<Plan>,
     kinds: usize,

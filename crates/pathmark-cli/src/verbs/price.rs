@@ -25,7 +25,6 @@ use serde::Serialize;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Confidence of the intervals.
 const LEVEL: f64 = 0.95;
 
 /// A larger share of the variance in one value of one pixel makes a price doubtful.
@@ -34,7 +33,6 @@ const LARGEST_SHARE: f64 = 0.05;
 /// kurtosis / n.
 const LARGEST_KURTOSIS: f64 = 200.0;
 
-/// The word for all estimators.
 const ALL: &str = "all";
 /// The pilots of other estimators have fewer samples by this factor.
 const SHORTER: u32 = 4;
@@ -80,7 +78,6 @@ struct Row {
     seconds: f64,
     seconds_low: f64,
     seconds_high: f64,
-    /// Seconds for half the error.
     half_rmse_seconds: Option<f64>,
     paid_rmse: Option<f64>,
     paid_seconds: Option<f64>,
@@ -88,7 +85,6 @@ struct Row {
     seconds_ratio: Option<f64>,
     /// With all estimators: the numbers of its groups. Two estimators that share a group cannot be told apart.
     groups: Vec<usize>,
-    /// The tail of the pilot's values.
     #[serde(flatten)]
     tail: Tail,
     /// Seeds of the pilot whose times are in doubt.

@@ -51,7 +51,6 @@ pub(super) fn label(told: &Told, record: &mut Record) {
 }
 
 impl Ranks {
-    /// The rule, if there is one.
     pub(super) fn rule(&self, lab: &Lab) -> Result<Option<RankRule>> {
         self.ranks.as_deref().map(|text| lab.rank_rule("ranks", text)).transpose()
     }

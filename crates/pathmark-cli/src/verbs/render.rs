@@ -122,7 +122,6 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     arguments.strict.check(outcome.counts.invalid)
 }
 
-/// Renders a part of the image into its file.
 fn render_part(arguments: &Arguments, shard: Shard, setup: Setup, console: &Console) -> Result<()> {
     let path = arguments.image.as_deref().unwrap_or(Path::new("part"));
     if image_io::check_format(path).is_ok() {
@@ -138,7 +137,6 @@ fn render_part(arguments: &Arguments, shard: Shard, setup: Setup, console: &Cons
     arguments.strict.check(invalid)
 }
 
-/// The printed summary of a render.
 fn summary(record: &Record, outcome: &Outcome) -> String {
     let Record { width, height, spp, estimator, effects, strategy, decomposition, .. } = record;
     // A workload has neither estimator nor effects, and traces no rays.

@@ -34,7 +34,6 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// A case and its outcome.
 #[derive(Serialize)]
 struct Row<'a> {
     id: &'static str,

@@ -345,7 +345,6 @@ fn predict_live(
     Ok((predict(observed, contenders, processors), doubts))
 }
 
-/// Prints findings and tables.
 fn show(blocks: &[Block]) -> Result<()> {
     for block in blocks {
         match block {

@@ -15,7 +15,6 @@ use std::path::{Component, Path, PathBuf};
 
 /// Name of the verdicts' folder within the results.
 pub const FOLDER: &str = "claims";
-/// The verdicts as a table.
 pub(super) const CSV: &str = "claims.csv";
 /// The verdicts as a text. It is beside the folders of the rows, so that its links work.
 pub const MARKDOWN: &str = "CLAIMS.md";
@@ -68,7 +67,6 @@ pub fn save(answers: &[Answer<'_>], out: &Path) -> Result<()> {
     atomic_file::write(&out.join(MARKDOWN), |file| file.write_all(text.as_bytes()))
 }
 
-/// The complete table of claims.
 fn table(stem: &'static str, answers: &[Answer<'_>]) -> Block {
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let of = |answer: &Answer<'_>| answer.found;
@@ -154,7 +152,6 @@ fn markdown(answers: &[Answer<'_>], base: &Path) -> String {
     text
 }
 
-/// One claim.
 fn entry(answer: &Answer<'_>, base: &Path) -> String {
     let claim = answer.claim;
     let mut text = format!("\n### {}. {}\n\n**{}**", claim.id, claim.claim, capital(answer.verdict));

@@ -4,7 +4,6 @@ use super::prelude::*;
 use crate::analysis::metg::{Grain, HALF, Metg, metg};
 use crate::serial::Serial;
 
-/// The options of this figure.
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Options {

@@ -162,7 +162,6 @@ pub fn figure_of_serial(definition: &Definition) -> Option<&'static str> {
     figures.into_iter().find(|entry| entry.of_serial).map(|entry| entry.name)
 }
 
-/// The blocks of all figures of the experiment.
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     check_figures(&results.definition)?;
     let mut blocks = Vec::new();

@@ -99,7 +99,6 @@ fn accuracies(results: &Results) -> Result<Vec<Accuracy>> {
     Ok(results.by(kind).into_iter().filter_map(of_scene).collect())
 }
 
-/// The image without its seed.
 fn kind(row: &Row) -> ImageKey {
     row.image.without_seed()
 }

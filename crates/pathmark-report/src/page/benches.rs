@@ -39,7 +39,6 @@ pub struct BenchRow {
     pub median_s: f64,
     /// Lower end of its 95 % interval.
     pub low_s: f64,
-    /// Upper end of its 95 % interval.
     pub high_s: f64,
 }
 

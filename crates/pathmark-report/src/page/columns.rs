@@ -34,7 +34,6 @@ impl<T> Columns<T> {
         self.add(head, |thing| TableCell::Text(text(thing)))
     }
 
-    /// Adds a column of numbers.
     pub(crate) fn number<N: Into<Option<f64>>>(
         self,
         head: impl Into<String>,
@@ -44,7 +43,6 @@ impl<T> Columns<T> {
         self.add(head, |thing| TableCell::Number(value(thing).into(), digits))
     }
 
-    /// Adds a column of values with their intervals.
     pub(crate) fn estimated<N: Into<Option<Estimated>>>(
         self,
         head: impl Into<String>,

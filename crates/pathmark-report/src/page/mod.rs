@@ -62,9 +62,7 @@ pub(crate) struct Section {
     pub(crate) in_short: Option<String>,
     /// The commands that run a part again; `None` if there are none.
     pub(crate) again: Option<Again>,
-    /// Rows that failed.
     pub(crate) failed: Vec<Record>,
-    /// Rows that were not run.
     pub(crate) left_out: LeftOut,
     /// Number of rows that were run and did not fail.
     pub(crate) rows: usize,
@@ -76,7 +74,6 @@ pub(crate) struct Section {
 }
 
 impl Section {
-    /// The section of an experiment.
     pub(crate) fn of(results: Results, blocks: Vec<Block>) -> Self {
         let rows = results.len();
         let doubts = results.doubts();
@@ -93,7 +90,6 @@ impl Section {
 /// Longer cells are prose and may be broken into lines.
 const LONGEST_CELL: usize = 56;
 
-/// The page.
 pub(crate) fn html(sections: &[Section]) -> Result<String> {
     let claims = sections.iter().filter(|section| section.chapter.is_none());
     let claims = claims.map(|section| self::section(section, true)).collect::<Result<Vec<Markup>>>()?;

@@ -8,9 +8,7 @@ use std::path::Path;
 /// The number of digits that the page shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Digits {
-    /// This many decimals.
     Decimals(usize),
-    /// This many significant digits.
     Significant(usize),
 }
 
@@ -83,7 +81,6 @@ impl Column {
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
-    /// Its heading.
     pub title: String,
     pub(super) length: usize,
     pub(super) columns: Vec<Column>,
@@ -100,7 +97,6 @@ impl Table {
         Self { title: title.into(), length: rows.len(), columns }
     }
 
-    /// How many rows it has.
     pub fn len(&self) -> usize {
         self.length
     }
@@ -119,7 +115,6 @@ impl Table {
         (0..self.length).map(|row| self.columns.iter().map(|column| column.entries[row].shown()).collect())
     }
 
-    /// Writes it as a CSV file.
     pub(crate) fn save(&self, path: &Path) -> Result<()> {
         let heads: Vec<String> = self.columns.iter().flat_map(Column::heads).collect();
         let row = |row: usize| self.columns.iter().flat_map(|column| column.entries[row].written()).collect();

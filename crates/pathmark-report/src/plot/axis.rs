@@ -25,9 +25,7 @@ pub enum Ticks {
 pub struct Axis {
     /// Quantity and unit.
     pub label: String,
-    /// Linear or logarithmic.
     pub scale: Scale,
-    /// The labelled values.
     pub ticks: Ticks,
     /// Values that the axis must reach even if no point does, such as 0 or 1.
     pub include: Vec<f64>,
@@ -39,7 +37,6 @@ impl Axis {
         Self { label: label.into(), scale: Scale::Linear, ticks: Ticks::Auto, include: Vec::new() }
     }
 
-    /// A logarithmic axis with automatic ticks.
     pub fn log(label: impl Into<String>) -> Self {
         Self { scale: Scale::Log, ..Self::linear(label) }
     }

@@ -4,7 +4,6 @@ use super::drawing::{Align, Drawing, Place};
 use super::style::{GRID, HAIRLINE, INK, LEADING, SMALL_SIZE, TEXT_SIZE};
 use crate::metric::heat_colour;
 
-/// Height of a bar.
 const HEIGHT: f64 = 14.0;
 /// Number of colours in a bar.
 const STEPS: u32 = 128;

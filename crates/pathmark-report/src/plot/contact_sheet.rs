@@ -25,9 +25,7 @@ const GAP: f64 = 16.0;
 pub struct Cell {
     /// Lines above the image: the first is the title.
     pub caption: Vec<String>,
-    /// Width in pixels.
     pub width: u32,
-    /// Height in pixels.
     pub height: u32,
     /// Red, green and blue of each pixel, rows from the top; `3 * width * height` bytes.
     pub rgb: Vec<u8>,
@@ -78,7 +76,6 @@ pub struct Placed {
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactSheet {
-    /// The subject, in one line.
     pub title: String,
     /// Scene, size, exposure; may be empty.
     pub subtitle: String,
@@ -86,7 +83,6 @@ pub struct ContactSheet {
     pub rows: Vec<Vec<Option<Cell>>>,
     /// The scales of the heat maps, if there are any.
     pub bars: Vec<ColourBar>,
-    /// How the images are compared on a page.
     pub comparison: Comparison,
 }
 

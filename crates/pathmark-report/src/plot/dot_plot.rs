@@ -50,7 +50,6 @@ pub struct DotRow {
 }
 
 impl DotRow {
-    /// A row.
     pub fn new(name: impl Into<String>, dots: Vec<Option<Dot>>) -> Self {
         Self { name: name.into(), dots }
     }
@@ -59,22 +58,16 @@ impl DotRow {
 /// A group of dots, one in each row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Group {
-    /// Its name in the legend.
     pub name: String,
-    /// Colour and marker.
     pub look: Look,
 }
 
 /// The plot. Leaves out dots without a position on its axis, and reports their number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DotPlot {
-    /// The subject, in one line.
     pub title: String,
-    /// Workload, machine, meaning of the bars; may be empty.
     pub subtitle: String,
-    /// Remarks below the plot; may be empty.
     pub caption: String,
-    /// The horizontal axis.
     pub axis: Axis,
     /// The groups. A single one has no entry in the legend.
     pub groups: Vec<Group>,

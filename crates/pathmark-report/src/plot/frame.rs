@@ -6,7 +6,6 @@ use super::ruler::{GAP, TICK};
 use super::style::{INK, LEADING, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
 use super::{font, heading, ruler};
 
-/// Width of a chart.
 pub(super) const WIDTH: f64 = 960.0;
 /// Height of the area in which data is drawn, if the legend does not need more.
 const DATA_HEIGHT: f64 = 400.0;

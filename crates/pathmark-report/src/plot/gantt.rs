@@ -38,7 +38,6 @@ const EDGED: f64 = 4.0;
 /// Width of that edge.
 const EDGE: f64 = 0.5;
 
-/// One job in a schedule.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JobBar {
     pub job: usize,
@@ -76,11 +75,8 @@ pub enum Shade {
 /// The chart. Leaves out impossible jobs (without a worker, or with invalid times or values), and reports their number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GanttChart {
-    /// The subject, in one line.
     pub title: String,
-    /// Workload, machine; may be empty.
     pub subtitle: String,
-    /// Remarks below the chart; may be empty.
     pub caption: String,
     /// Meaning of the colours, with the unit.
     pub label: String,

@@ -21,13 +21,9 @@ const BAR: f64 = 480.0;
 /// A rectangle of an image, from its first pixel to the one after its last.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tile {
-    /// First column.
     pub x0: u32,
-    /// First row, from the top.
     pub y0: u32,
-    /// One past the last column.
     pub x1: u32,
-    /// One past the last row.
     pub y1: u32,
     /// The value that its colour shows.
     pub value: f64,
@@ -36,11 +32,8 @@ pub struct Tile {
 /// One image.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatPanel {
-    /// Its title, above it.
     pub title: String,
-    /// Width of the image in pixels.
     pub width: u32,
-    /// Height of the image in pixels.
     pub height: u32,
     /// Its rectangles. Uncovered parts stay white; parts beyond the image are cut.
     pub tiles: Vec<Tile>,
@@ -49,17 +42,13 @@ pub struct HeatPanel {
 /// The figure. Tiles whose value is not finite are grey, and it reports their number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatMap {
-    /// The subject, in one line.
     pub title: String,
-    /// Scene, decomposition, machine; may be empty.
     pub subtitle: String,
-    /// Remarks below the figure; may be empty.
     pub caption: String,
     /// Meaning of the colours, with the unit.
     pub label: String,
     /// Values of the darkest and the lightest colour; `None` for the smallest and the largest value.
     pub scale: Option<(f64, f64)>,
-    /// The images.
     pub panels: Vec<HeatPanel>,
 }
 

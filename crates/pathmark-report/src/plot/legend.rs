@@ -20,12 +20,7 @@ const SPACING: f64 = 5.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sample {
     /// A series: its marker, and its line if it has one.
-    Series {
-        /// Colour, marker and dashes.
-        look: Look,
-        /// Whether the points are joined.
-        line: bool,
-    },
+    Series { look: Look, line: bool },
     /// A line without points.
     Line { colour: Colour, dash: Dash, width: f64 },
 }

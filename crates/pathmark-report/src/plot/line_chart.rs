@@ -17,9 +17,7 @@ const FIT_LINE: f64 = 1.5;
 /// A point, with the intervals of its coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
-    /// Along the horizontal axis.
     pub x: f64,
-    /// Along the vertical axis.
     pub y: f64,
     /// Low and high end of x.
     pub x_interval: Option<(f64, f64)>,
@@ -64,13 +62,10 @@ pub enum Spread {
 /// Points that belong together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Its name in the legend.
     pub name: String,
     /// Its points, in the order in which a line joins them.
     pub points: Vec<Point>,
-    /// Colour, marker and dashes.
     pub look: Look,
-    /// How its intervals are shown.
     pub spread: Spread,
     /// Whether a line joins its points.
     pub line: bool,
@@ -116,11 +111,8 @@ pub struct LineChart {
     pub subtitle: String,
     /// Remarks below the chart; may be empty.
     pub caption: String,
-    /// Horizontal axis.
     pub x: Axis,
-    /// Vertical axis.
     pub y: Axis,
-    /// The data.
     pub series: Vec<Series>,
     /// Guides and fits.
     pub overlays: Vec<Overlay>,

@@ -45,7 +45,6 @@ pub use overlay::{Curve, Overlay, OverlayKind};
 
 /// A figure that can be drawn as vectors and as pixels.
 pub trait Figure {
-    /// The marks that it consists of.
     fn drawing(&self) -> Drawing;
 
     /// The same figure on other axes, and the name of those axes, for a page to switch to.

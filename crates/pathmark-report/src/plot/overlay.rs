@@ -6,19 +6,9 @@ use super::axis::Range;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Curve {
     /// y = intercept + slope x.
-    Line {
-        /// y at x = 0.
-        intercept: f64,
-        /// Rise per unit of x.
-        slope: f64,
-    },
+    Line { intercept: f64, slope: f64 },
     /// y = scale x^exponent: straight on two logarithmic axes.
-    Power {
-        /// y at x = 1.
-        scale: f64,
-        /// Its slope on those axes.
-        exponent: f64,
-    },
+    Power { scale: f64, exponent: f64 },
     /// y = x / (1 + contention (x - 1) + coherence x (x - 1)): speedup over workers by the Universal Scalability Law, and by Amdahl's law
     /// if the coherence is 0. Gustafson's law is a line.
     Scaling {
@@ -60,14 +50,11 @@ pub enum OverlayKind {
 pub struct Overlay {
     /// Its text in the legend; may have several lines.
     pub label: String,
-    /// Its formula.
     pub curve: Curve,
-    /// Guide or fit.
     pub kind: OverlayKind,
 }
 
 impl Overlay {
-    /// A theoretical line.
     pub fn guide(label: impl Into<String>, curve: Curve) -> Self {
         Self { label: label.into(), curve, kind: OverlayKind::Guide }
     }

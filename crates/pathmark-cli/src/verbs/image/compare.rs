@@ -64,7 +64,6 @@ fn shared_samples(inputs: &[(&PathBuf, Option<FilmKey>)]) -> Result<Option<Strin
     Ok(remark)
 }
 
-/// A line of the output.
 struct Line {
     name: &'static str,
     value: f64,
