@@ -2,7 +2,7 @@
 
 use crate::analysis::balance::{Balance, processors_in_use};
 use crate::measure::{TraceFile, TraceRow, available_threads, schedule_name};
-use crate::plot::gantt::{GanttChart, JobBar, Schedule, Shade};
+use crate::plot::{GanttChart, JobBar, Schedule};
 
 /// The balance of a traced run; `None` if its workers or times are impossible.
 pub fn balance(trace: &TraceFile) -> Option<Balance> {
@@ -50,7 +50,6 @@ pub(super) fn charts(schedules: Vec<Schedule>, subtitle: String) -> GanttChart {
         subtitle,
         caption: "White is waiting; a frame ends at the makespan.".to_string(),
         label: "milliseconds of the job".to_string(),
-        shade: Shade::Quantile,
         schedules,
     }
 }

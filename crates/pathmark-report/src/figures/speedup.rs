@@ -237,9 +237,8 @@ impl Speedups<'_> {
                 return None;
             };
             let serial_share = parameters.first()?.estimate.value;
-            let curve = Curve::Scaling { contention: serial_share, coherence: 0.0 };
             let line = series.iter().position(|series| series.name == name)?;
-            Some(Overlay::fit(format!("{name}: Amdahl, s = {serial_share:.3}"), curve, line))
+            Some(Overlay::fit(format!("{name}: Amdahl, s = {serial_share:.3}"), Curve::Amdahl { serial_share }, line))
         };
         self.serial.lines(self.processors).into_iter().filter_map(overlay).collect()
     }

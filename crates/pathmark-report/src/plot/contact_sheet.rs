@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::drawing::{Align, Drawing};
 use super::style::{INK, LEADING, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
-use super::{colour_bar, font, heading, number, paint};
+use super::{colour_bar, font, frame, number, paint};
 use crate::error::{Error, Result};
 use crate::image_io::Image;
 use crate::image_io::tone_map::quantise_image;
@@ -97,7 +97,7 @@ impl ContactSheet {
         let width = 2.0 * MARGIN + columns * (column + GAP) - GAP;
 
         let mut drawing = Drawing::new(&self.title, width, 0.0);
-        let mut y = heading::above(&mut drawing, &self.title, &self.subtitle);
+        let mut y = frame::words_above(&mut drawing, &self.title, &self.subtitle);
         let mut placed = Vec::new();
         for (number, (cells, row)) in self.rows.iter().zip(&images).enumerate() {
             y += GAP;
@@ -126,10 +126,11 @@ impl ContactSheet {
         }
         for bar in &self.bars {
             let width = (2.0 * column + GAP).min(width - 2.0 * MARGIN - 40.0);
-            let quarters = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| number::short(share * bar.full, 3));
-            let [zero, first, half, third, full] = quarters;
-            let labels = [zero, first, half, third, if bar.is_largest { full } else { format!("≥ {full}") }];
-            y = colour_bar::draw(&mut drawing, (MARGIN, y + 1.5 * GAP), width, (0.0, 1.0), &bar.label, &labels);
+            let label = |share: f64| {
+                let open = if share == 1.0 && !bar.is_largest { "≥ " } else { "" };
+                format!("{open}{}", number::short(share * bar.full, 3))
+            };
+            y = colour_bar::draw(&mut drawing, (MARGIN, y + 1.5 * GAP), width, (0.0, 1.0), &bar.label, label);
         }
         drawing.height = (y + MARGIN).ceil();
         let mut sheet = paint::pixels(&drawing, 1.0)?;

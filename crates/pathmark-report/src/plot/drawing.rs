@@ -1,6 +1,5 @@
 //! Drawings: marks in pixels, x to the right and y down, painted in order.
 
-use super::font;
 use super::style::{Colour, Dash, HAIRLINE};
 use std::ops::Range;
 
@@ -26,24 +25,6 @@ pub struct Text {
     pub align: Align,
     /// Whether it reads upwards, as the title of a vertical axis does.
     pub upwards: bool,
-}
-
-impl Text {
-    /// Left, top, right and bottom of its bounding box.
-    pub fn bounds(&self) -> [f64; 4] {
-        let (width, half) = (font::width(&self.text, self.size), 0.5 * self.size);
-        let before = match self.align {
-            Align::Left => 0.0,
-            Align::Centre => 0.5 * width,
-            Align::Right => width,
-        };
-        let (x, y) = self.at;
-        if self.upwards {
-            [x - half, y + before - width, x + half, y + before]
-        } else {
-            [x - before, y - half, x - before + width, y + half]
-        }
-    }
 }
 
 /// One element to paint.

@@ -1,13 +1,13 @@
 //! Line charts: lines and points over two axes, such as error against samples, or speedup against threads.
 
 use super::Figure;
-use super::axis::{Axis, Range, Scale, Ticks};
+use super::axis::{Axis, Range, Scale};
 use super::drawing::{Align, Drawing, Note, PartKind, Place};
-use super::frame::{self, Frame, Words};
+use super::frame::{self, Frame};
 use super::legend::{self, LegendEntry, Sample};
 use super::marker;
 use super::number::{between, short};
-use super::overlay::{Overlay, OverlayKind, inside};
+use super::overlay::{Overlay, inside};
 use super::style::{Colour, DASHES, Dash, LINE, Look, MUTED, TEXT_SIZE};
 use std::collections::HashMap;
 
@@ -132,7 +132,7 @@ impl LineChart {
         let toggled = |axis: &Axis| Axis {
             scale: if is_log { Scale::Linear } else { Scale::Log },
             // Labels that fit on a logarithmic axis may overlap on a linear one.
-            ticks: if is_log { Ticks::Auto } else { axis.ticks.clone() },
+            ticks: axis.ticks.clone().filter(|_| !is_log),
             include: axis.include.iter().copied().filter(|value| is_log || *value > 0.0).collect(),
             label: axis.label.clone(),
         };
@@ -178,20 +178,20 @@ impl LineChart {
             let sample = Sample::Series { look: series.look, line: series.line };
             let names: Vec<&str> = self.alike(first_alike, index).map(|series| series.name.as_str()).collect();
             let note = if series.points.is_empty() { " (no data)" } else { "" };
-            LegendEntry::of(sample, &series.name, &format!("{}{note}", names.join(" = ")))
+            LegendEntry::new(sample, &series.name, &format!("{}{note}", names.join(" = ")))
         });
         let overlays = self.overlays.iter().enumerate().map(|(index, overlay)| {
-            let (colour, dash) = self.stroke(index, overlay.kind);
-            LegendEntry::new(Sample::Line { colour, dash, width: FIT_LINE }, &overlay.label)
+            let (colour, dash) = self.stroke(index, overlay);
+            LegendEntry::new(Sample::Line { colour, dash, width: FIT_LINE }, &overlay.label, &overlay.label)
         });
         series.chain(overlays).collect()
     }
 
     /// Colour and dashes of overlay number `index`; neighbouring guides differ in their dashes.
-    fn stroke(&self, index: usize, kind: OverlayKind) -> (Colour, Dash) {
-        match kind {
-            OverlayKind::Guide => (MUTED, DASHES[1 + index % 2]),
-            OverlayKind::Fit(series) => (self.series.get(series).map_or(MUTED, |series| series.look.colour), DASHES[3]),
+    fn stroke(&self, index: usize, overlay: &Overlay) -> (Colour, Dash) {
+        match overlay.fitted_to {
+            None => (MUTED, DASHES[1 + index % 2]),
+            Some(series) => (self.series.get(series).map_or(MUTED, |series| series.look.colour), DASHES[3]),
         }
     }
 
@@ -273,8 +273,8 @@ impl Figure for LineChart {
         let first_alike = self.first_alike();
         let entries = self.entries(&first_alike);
         let ranges = self.ranges();
-        let words = Words { title: &self.title, subtitle: &self.subtitle, caption: &self.caption };
-        let (mut drawing, frame) = Frame::begin(&words, (&self.x, &self.y), ranges, legend::size(&entries));
+        let words = [&self.title, &self.subtitle, &self.caption].map(String::as_str);
+        let (mut drawing, frame) = Frame::begin(words, (&self.x, &self.y), ranges, legend::size(&entries));
         let mut lost = 0;
         if ranges.is_some() {
             let own = self.series.iter().enumerate().filter(|(index, _)| first_alike[*index] == *index);
@@ -282,7 +282,7 @@ impl Figure for LineChart {
                 drawing.part(PartKind::Series, &series.name, |drawing| Self::draw_band(drawing, &frame, series));
             }
             for (index, overlay) in self.overlays.iter().enumerate() {
-                let (colour, dash) = self.stroke(index, overlay.kind);
+                let (colour, dash) = self.stroke(index, overlay);
                 drawing.part(PartKind::Series, &overlay.label, |drawing| {
                     for stretch in frame.curve(|x, y| inside(&overlay.curve, x, y)) {
                         drawing.dashed(&stretch, colour, FIT_LINE, dash);
