@@ -16,7 +16,7 @@ use std::collections::HashMap;
 /// than processors, unless they have a thread for each job.
 pub fn predictions(results: &Results, contenders: &[Contender]) -> Result<Vec<Prediction>> {
     let serial = results.serial()?;
-    let processors = results.processors();
+    let processors = results.run.machine.processors;
     let costs = serial_costs(results)?;
     let modelled = |row: &Row| row.threads <= processors || row.threads == row.jobs;
     let pairs = serial.in_order(results);

@@ -65,7 +65,7 @@ pub fn rank_predictions(
     messages: Messages,
 ) -> Result<Vec<RankPrediction>> {
     let lab: &Lab = &results.definition.lab;
-    let (serial, costs, processors) = (results.serial()?, serial_costs(results)?, results.processors());
+    let (serial, costs, processors) = (results.serial()?, serial_costs(results)?, results.run.machine.processors);
     let pairs = serial.in_order(results);
     let pairs = pairs.iter().filter(|(row, _)| row.threads <= processors);
     let groups = gathered(pairs.filter_map(|(row, serial)| {

@@ -26,11 +26,6 @@ pub(super) fn ratio_bars<T: Into<Estimated>>(told: impl IntoIterator<Item = T>) 
     format!("Median of ratios within a repetition. {}", bars(told))
 }
 
-/// A number, or a dash for `None`.
-pub(super) fn number(value: Option<f64>, digits: usize) -> String {
-    value.map_or_else(|| "-".to_string(), |value| format!("{value:.digits$}"))
-}
-
 /// An interval with the confidence that it reaches: few values cannot reach 95 %.
 pub(super) fn with_level(interval: &Interval, digits: usize) -> String {
     format!("{:.digits$} to {:.digits$} ({:.1} %)", interval.low, interval.high, interval.level * 100.0)

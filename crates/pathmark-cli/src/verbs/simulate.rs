@@ -12,7 +12,7 @@ use crate::measure::{
     CalibrationRow, ForeignLoad, SERIAL, Settings, Setup, TimingConcerns, TraceFile, available_threads, calibrate,
 };
 use crate::report::rank_forecasts::{self, RankPlan};
-use crate::report::{Block, Results, forecasts, save};
+use crate::report::{Block, Results, forecasts};
 use crate::simulate::{
     Contender, Hardware, Messages, Noise, Observed, Prediction, Speeds, contenders, forecast, predict,
 };
@@ -150,7 +150,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     };
     show(&blocks)?;
     for block in &blocks {
-        save(block, &arguments.out)?;
+        block.save(&arguments.out)?;
     }
     print(&format!("figures and {table} in {}", arguments.out.display()))
 }

@@ -48,10 +48,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     plot.guides = all.iter().map(Against::workers).collect::<BTreeSet<_>>().into_iter().map(guide).collect();
     plot.subtitle = results.workload();
     plot.caption = ratio_bars(all.iter().map(|against| against.speedup));
-    let mut blocks = vec![Block::figure("baselines", plot)];
-    blocks.extend(finding(&all));
-    blocks.push(table(&all));
-    Ok(blocks)
+    Ok([Block::figure("baselines", plot)].into_iter().chain(finding(&all)).chain([table(&all)]).collect())
 }
 
 fn guide(workers: usize) -> (f64, String) {

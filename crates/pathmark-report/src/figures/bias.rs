@@ -128,10 +128,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .number("black pixels, %", Decimals(3), |cost| percent(cost.black))
         .number("fireflies in a million pixels", Decimals(0), |cost| cost.fireflies.map(|share| 1e6 * share))
         .end();
-    let mut blocks = vec![Block::figure("bias", plot)];
-    blocks.extend(finding);
-    blocks.push(table);
-    Ok(blocks)
+    Ok([Block::figure("bias", plot)].into_iter().chain(finding).chain([table]).collect())
 }
 
 /// The values in order: the usual one, then by their numbers; a value without a number counts as 0.

@@ -28,7 +28,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     if lines.is_empty() {
         return Ok(Vec::new());
     }
-    let processors = results.processors();
+    let processors = results.run.machine.processors;
     let parallel = lines.iter().filter(|line| line.schedule.key.threads == processors && !line.schedule.is_serial());
     let whole = parallel.filter_map(|line| line.by_clock.filter(|told| !told.is_partial));
     let claimed = median(&whole.map(|told| told.value).collect::<Vec<f64>>());

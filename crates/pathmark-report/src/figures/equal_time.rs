@@ -3,7 +3,6 @@
 use super::prelude::*;
 use crate::experiment::EXTERNAL;
 use crate::image_io::Image;
-use crate::reference_image::reference_image;
 
 /// The most images in a row that fit on the page.
 const COLUMNS: usize = 4;
@@ -33,7 +32,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let caption = vec![name.clone(), format!("{error}{} spp, {:.2} s", record.spp, seconds(record))];
         cells.push(Some(Cell::of(image, caption)?));
     }
-    if let Some(reference) = reference_image(results, Some(&scene))? {
+    if let Some(reference) = results.reference_image(Some(&scene))? {
         cells.push(Some(Cell::of(&reference, vec!["reference".to_string(), "mean of two halves".to_string()])?));
     }
     let sheet = ContactSheet {

@@ -16,7 +16,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         Axis::log("RMSE, linear radiance"),
         first.iter().enumerate().map(|(index, contender)| series(index, contender)).collect(),
     );
-    chart.subtitle = format!("{scene}, {}, {}", results.size(), results.machine_line());
+    chart.subtitle = format!("{scene}, {}, {}", results.size(), results.run.machine.line());
     chart.caption =
         "Bands: 95 % interval over seeds. Along a line the samples per pixel double from point to point.".to_string();
     let start = first.first().and_then(|contender| contender.points.first()).map(|point| (point.seconds, point.rmse));

@@ -42,7 +42,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     );
     let mut plot = plot.grouped(others);
     plot.guides = vec![(1.0, format!("as fast as {first}"))];
-    plot.subtitle = results.machine_line();
+    plot.subtitle = results.run.machine.line();
     plot.caption = "Bars: 95 % interval over seeds, of error and time together.".to_string();
     Ok(vec![
         Block::figure("estimators", plot),

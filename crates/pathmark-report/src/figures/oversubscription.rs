@@ -75,7 +75,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 /// each processor.
 fn finding(results: &Results, claim: &Claim) -> Result<Option<Block>> {
     let Claim { per_section, few, sections: [least, most], against } = claim;
-    let processors = results.processors();
+    let processors = results.run.machine.processors;
     let of = |strategy: &str| -> Vec<&Row> {
         results.rows().filter(|row| row.strategy == strategy && row.decomposition.starts_with(GRID)).collect()
     };

@@ -47,7 +47,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         Axis::linear("light of single precision over that of double, less 1, in ten-thousandths").including([0.0]);
     let mut plot = DotPlot::new("Is single precision darker or lighter?", axis, dots.collect());
     plot.guides = vec![(0.0, "as light".to_string())];
-    plot.subtitle = results.machine_line();
+    plot.subtitle = results.run.machine.line();
     plot.caption =
         "Mean over seeds, both precisions with the same random numbers to fewer digits. Bars: 95 %.".to_string();
     let rmse = |rows: &[&Row]| {

@@ -21,6 +21,6 @@ pub(super) use crate::results::Results;
 pub(super) use crate::rows::{Row, gathered, group, typical, values};
 pub(super) use crate::schedule::Schedule;
 pub(super) use crate::table::Digits::{Decimals, Significant};
-pub(super) use crate::words::{bars, counted, in_table_order, number, ratio_bars, with_level};
+pub(super) use crate::words::{bars, counted, in_table_order, ratio_bars, with_level};
 pub(super) use serde::Deserialize;
 pub(super) use std::collections::{BTreeMap, BTreeSet};

@@ -76,8 +76,5 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .estimated("RMSE, linear", Decimals(5), |line| line.error)
         .number("RMSE, display", Decimals(5), |line| line.shown)
         .end();
-    let mut blocks = vec![Block::figure("rmse-against-spp", chart)];
-    blocks.extend(findings);
-    blocks.push(table);
-    Ok(blocks)
+    Ok([Block::figure("rmse-against-spp", chart)].into_iter().chain(findings).chain([table]).collect())
 }

@@ -40,7 +40,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let images: BTreeMap<_, _> = all.iter().map(|(schedule, _)| (*schedule, images(schedule))).collect();
     let peers = gathered(images.iter().map(|(schedule, own)| (own, schedule))).into_iter();
     let usual = peers.max_by_key(|(_, schedules)| schedules.len()).map(|(own, _)| own.clone()).unwrap_or_default();
-    let found = Speedups { results, serial, all, asked, processors: results.processors(), images, usual };
+    let found = Speedups { results, serial, all, asked, processors: results.run.machine.processors, images, usual };
     let mut blocks = found.figures();
     blocks.extend(found.best()?);
     blocks.extend(found.thread_per_row());

@@ -58,7 +58,7 @@ pub fn write_benches(out: &Path, command: String, rows: &[BenchRow]) -> Result<(
     csv_file::write(&folder.join(FILE), rows)
 }
 
-/// The section, if a folder has such a file. Writes its figure and tables beside the file.
+/// The section, if a folder has such a file.
 pub(crate) fn section(out: &Path) -> Result<Option<Section>> {
     let folder = out.join(FOLDER);
     let path = folder.join(FILE);
@@ -70,7 +70,7 @@ pub(crate) fn section(out: &Path) -> Result<Option<Section>> {
     let speedups = speedups(&rows);
     let mut blocks = Vec::new();
     if !speedups.is_empty() {
-        blocks.push(Block::Figure { stem: "speedup", figure: Box::new(plot(&speedups, run.machine.line())) });
+        blocks.push(Block::figure("speedup", plot(&speedups, run.machine.line())));
         blocks.push(speedup_table(&speedups));
     }
     let seam = pairs(&rows);
@@ -78,9 +78,6 @@ pub(crate) fn section(out: &Path) -> Result<Option<Section>> {
         blocks.push(seam_table(&seam));
     }
     blocks.push(all(&rows));
-    for block in &blocks {
-        block.save(&folder.join("figures"))?;
-    }
     Ok(Some(Section {
         name: FOLDER.to_string(),
         title: "What cargo bench measured".to_string(),

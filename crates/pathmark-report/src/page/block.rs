@@ -45,7 +45,7 @@ impl Block {
     }
 
     /// Writes the figure, picture or table (as CSV) into the folder.
-    pub(crate) fn save(&self, folder: &Path) -> Result<()> {
+    pub fn save(&self, folder: &Path) -> Result<()> {
         std::fs::create_dir_all(folder).map_err(|e| Error::system("creating", folder, e))?;
         match self {
             Self::Finding(_) | Self::Notice(_) => Ok(()),

@@ -3,7 +3,6 @@
 mod again;
 pub(crate) mod benches;
 pub(crate) mod block;
-mod columns;
 pub(crate) mod guards;
 pub(crate) mod table;
 
@@ -344,7 +343,15 @@ fn provenance(section: &Section, run: &RunFile) -> Markup {
         ("memory", or_unknown(machine.memory_bytes, memory)),
         ("system", machine.system.clone()),
         ("load when the sweep began", machine.load_average.clone()),
-        ("compiler", format!("{}, profile {}, flags {}", machine.rustc, machine.profile, or_none(&machine.rustflags))),
+        (
+            "compiler",
+            format!(
+                "{}, profile {}, flags {}",
+                machine.rustc,
+                machine.profile,
+                if machine.rustflags.is_empty() { "none" } else { &machine.rustflags }
+            ),
+        ),
         ("program", program.clone()),
         (
             "Pathmark's sources",
@@ -372,10 +379,6 @@ fn prose(text: &str) -> Markup {
             @if index % 2 == 1 { code { (part) } } @else { (part) }
         }
     }
-}
-
-fn or_none(text: &str) -> &str {
-    if text.is_empty() { "none" } else { text }
 }
 
 #[cfg(test)]
