@@ -22,6 +22,7 @@ pub use figures::{FIGURES, FigureEntry, check_figures, figure_of_serial};
 pub use page::benches::{BenchRow, write_benches};
 pub use page::block::Block;
 pub use results::Results;
+pub use words::counted;
 
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;

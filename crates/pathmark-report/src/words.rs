@@ -5,7 +5,7 @@ use crate::analysis::Interval;
 use std::collections::BTreeSet;
 
 /// A count with its noun: `1 thread`, `2 threads`.
-pub(super) fn counted(count: usize, thing: &str) -> String {
+pub fn counted(count: usize, thing: &str) -> String {
     if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
 }
 

@@ -15,14 +15,14 @@ pub(crate) fn lock_folder(out: &Path, sharing: Sharing) -> Result<Lock> {
     Lock::of_folder(out, "out", sharing)
 }
 
-/// A count with its noun: `1 worker`, `2 workers`.
-pub(crate) fn counted(count: usize, thing: &str) -> String {
-    if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
+/// A text of one or more lines for a terminal, with the control characters of names in it escaped.
+pub(super) fn safe(text: &str) -> String {
+    text.split('\n').map(printable).collect::<Vec<_>>().join("\n")
 }
 
-/// Prints a text and a line end. Control characters of names in it are escaped, except the ends of its lines.
+/// Prints a text and a line end.
 pub(crate) fn print(text: &str) -> Result<()> {
-    print_verbatim(&text.split('\n').map(printable).collect::<Vec<_>>().join("\n"))
+    print_verbatim(&safe(text))
 }
 
 /// Prints a text of the program's own, such as a script, and a line end.

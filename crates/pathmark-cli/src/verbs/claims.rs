@@ -1,14 +1,7 @@
 //! `pathmark claims`: the claims of the four reports beside the measurements.
 
-use crate::console::output::{print, print_json};
-use crate::error::{Error, InputError, Result};
-use crate::files::{Files, create_folder};
-use crate::lab::Lab;
+use super::prelude::*;
 use crate::report::claims::{self, Answer, Report, judge};
-use clap::Args;
-use serde::Serialize;
-use std::path::PathBuf;
-use std::sync::Arc;
 
 /// `pathmark claims out --report A`
 #[derive(Args)]

@@ -1,14 +1,12 @@
 //! `pathmark list [KIND [NAME]]`: all names that a user can choose from, or one of them.
 
-use crate::console::output::{counted, print, print_json};
-use crate::error::{InputError, Result};
+use super::prelude::*;
 use crate::experiment::{Definition, keys};
 use crate::film::DECOMPOSITIONS;
 use crate::image_io::FORMATS;
 #[cfg(feature = "device")]
 use crate::kernel::{Device, devices};
 use crate::kernel::{KernelEntry, Spec, choose};
-use crate::lab::Lab;
 use crate::material::MATERIALS;
 use crate::measure::{COLUMNS, Column, OUTPUTS, WARNINGS, WarningEntry};
 use crate::metric::METRICS;
@@ -16,9 +14,6 @@ use crate::report::FIGURES;
 use crate::sampling::SAMPLERS;
 use crate::scene::{ACCELERATORS, CAMERAS, FEATURES, FILTERS, GENERATORS, PROFILES, SHAPES, effect_names};
 use crate::simd::LEVELS;
-use clap::{Args, ValueEnum};
-use serde::Serialize;
-use std::sync::Arc;
 
 /// `pathmark list strategies --json`
 #[derive(Args)]

@@ -1,22 +1,14 @@
 //! `pathmark merge PART...`: an image from the parts that `render --shard` made, or a sweep from those of `run --shard`.
 
-use super::image::picture::is_film;
+use super::image::is_film;
+use super::prelude::*;
 use super::strict::Strict;
 use crate::command_line;
-use crate::console::Console;
-use crate::console::output::{print, print_json};
-use crate::error::{InputError, Result};
-use crate::experiment::{MergedSweep, Progress as _, merge_sweeps};
-use crate::files::Files;
+use crate::experiment::{MergedSweep, merge_sweeps};
 use crate::film_file::write_film;
 use crate::image_io;
-use crate::lab::Lab;
 use crate::measure::{Provenance, merge};
 use crate::report;
-use clap::Args;
-use serde_json::json;
-use std::path::PathBuf;
-use std::sync::Arc;
 
 /// `pathmark merge part-*.film -o cornell.exr`, after `pathmark render cornell --shard 1/4 -o part-1.film` and so on
 #[derive(Args)]

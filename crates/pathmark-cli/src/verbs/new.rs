@@ -1,12 +1,9 @@
 //! `pathmark new experiment|scene NAME`: a commented file to start from.
 
-use crate::console::output::print;
-use crate::error::{Error, InputError, Result};
+use super::prelude::*;
 use crate::shell;
-use clap::{Args, ValueEnum};
 use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write};
-use std::path::PathBuf;
 
 /// `pathmark new experiment mine`
 #[derive(Args)]

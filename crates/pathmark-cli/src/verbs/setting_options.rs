@@ -1,15 +1,13 @@
 //! The options for the image, its pieces and the schedule, made from the table of axes.
 
-use crate::error::{Error, InputError, Result};
+use super::prelude::*;
 use crate::input::{locate, read_text};
 use crate::kernel::Spec;
-use crate::lab::Lab;
-use crate::measure::{Kind, LARGEST_SEED, SETTINGS, Setting, Settings, THREAD_PER_ROW};
+use crate::measure::{Kind, LARGEST_SEED, SETTINGS, Setting, THREAD_PER_ROW};
 use clap::builder::ValueParser;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
-use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, value_parser};
-use std::path::Path;
+use clap::{Arg, ArgMatches, Command, FromArgMatches, value_parser};
 
 /// The values of the options for *what* is rendered, or of those for pieces and workers.
 pub(super) struct Options<const WHAT: bool> {

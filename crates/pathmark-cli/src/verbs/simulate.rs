@@ -1,24 +1,15 @@
 //! `pathmark simulate TRACE`: replays the jobs of a run on workers that this machine does not have.
 
+use super::prelude::*;
 use super::run::note_doubts;
 use crate::cluster::MessageCosts;
-use crate::console::Console;
-use crate::console::output::print;
-use crate::error::{Error, InputError, Result};
-use crate::experiment::{MESSAGES, Progress, read_calibration};
-use crate::files::{Files, create_folder};
-use crate::lab::Lab;
-use crate::measure::{
-    CalibrationRow, ForeignLoad, SERIAL, Settings, Setup, TimingConcerns, TraceFile, available_threads, calibrate,
-};
+use crate::experiment::{MESSAGES, read_calibration};
+use crate::measure::{CalibrationRow, ForeignLoad, SERIAL, TimingConcerns, TraceFile, available_threads, calibrate};
 use crate::report::rank_forecasts::{self, RankPlan};
 use crate::report::{Block, Results, forecasts};
 use crate::simulate::{
     Contender, Hardware, Messages, Noise, Observed, Prediction, Speeds, contenders, forecast, predict,
 };
-use clap::Args;
-use std::path::PathBuf;
-use std::sync::Arc;
 
 /// `pathmark simulate run.csv --workers 1..4096`, after `pathmark render cornell --strategy serial --trace run.csv`
 #[derive(Args)]

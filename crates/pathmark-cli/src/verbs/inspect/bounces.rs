@@ -1,20 +1,11 @@
 //! `pathmark inspect bounces SCENE`: the light of an image by number of bounces, and the lengths of its paths.
 
 use crate::atomic_file;
-use crate::console::Console;
-use crate::console::output::{number, print, print_json};
-use crate::error::Result;
-use crate::experiment::Progress;
-use crate::files::Files;
 use crate::kernel::{Inspector, LightByBounce, Spec};
-use crate::lab::Lab;
 use crate::plot::number::short;
+use crate::verbs::prelude::*;
 use crate::verbs::setting_options::{Samples, no_paths};
-use clap::Args;
-use serde_json::{Value, json};
 use std::fmt::Write;
-use std::path::PathBuf;
-use std::sync::Arc;
 
 /// `pathmark inspect bounces cornell --size 128x96 --spp 16`
 #[derive(Args)]

@@ -1,19 +1,15 @@
 //! `pathmark inspect path SCENE`: one sample's path, bounce by bounce.
 
-use crate::console::output::{self, print, print_json};
-use crate::error::{Error, InputError, Result};
+use crate::console::output;
 use crate::kernel::{self, Event, Inspector, PathLog, RenderOptions, Spec};
-use crate::lab::Lab;
 use crate::math::{Rgb, Vec3};
-use crate::measure::{InvalidSample, LARGEST_SPP, SETTINGS, Setting, Settings};
+use crate::measure::{InvalidSample, LARGEST_SPP, SETTINGS, Setting};
 use crate::plot::number;
 use crate::scene::Scene;
 use crate::shell;
 use crate::simd::Precision;
+use crate::verbs::prelude::*;
 use crate::verbs::setting_options::{What, no_paths};
-use clap::Args;
-use serde_json::{Value, json};
-use std::sync::Arc;
 
 /// `pathmark inspect path cornell --pixel 300,250 --sample 3`
 #[derive(Args)]
