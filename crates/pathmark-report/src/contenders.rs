@@ -1,20 +1,16 @@
 //! Contenders: the ways to render a scene that an experiment compares by price. Each has error curves over seeds, and
 //! seconds per sample.
 
-use super::estimated::LEVEL;
-use super::naming::{Part, joined, needed};
-use super::results::Results;
-use super::rows::{Row, group, values};
+use super::naming::{Part, needed};
 use super::schedule::{crew, strategy};
-use crate::analysis::Interval;
 use crate::analysis::jackknife::{Curve, SeedCurves};
 use crate::analysis::mean::geometric_interval;
 use crate::analysis::mse::over_seeds;
 use crate::analysis::price::{Law, Renderer};
-use crate::error::{InputError, Result};
+use crate::error::InputError;
 use crate::experiment::{EXTERNAL, law_of};
-use crate::measure::{ImageKey, SETTINGS, ScheduleKey, Setting};
-use std::collections::{BTreeMap, BTreeSet};
+use crate::measure::{SETTINGS, Setting};
+use crate::prelude::*;
 use std::iter::once;
 
 /// An estimator with a sampler and a schedule, on a scene.

@@ -1,14 +1,7 @@
 //! Simulated and predicted schedules as tables and charts: for the figure of an experiment and for the verb `simulate`.
 
-use super::block::Block;
-use super::results::Results;
-use super::rows::Row;
-use super::table::Digits::Decimals;
-use super::words::counted;
 use crate::analysis::speedup::serial_fraction;
-use crate::error::Result;
-use crate::plot::style::Look;
-use crate::plot::{Axis, Curve, LineChart, Overlay, Point, Series};
+use crate::prelude::*;
 use crate::simulate::{Contender, DISTURBED, Forecast, Observed, Prediction, agreement, predict};
 use std::collections::HashMap;
 

@@ -9,6 +9,7 @@ mod page;
 #[cfg(test)]
 mod pairing_tests;
 pub mod plot;
+mod prelude;
 pub mod rank_forecasts;
 mod results;
 mod rows;

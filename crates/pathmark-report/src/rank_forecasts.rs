@@ -1,17 +1,10 @@
 //! Simulated and predicted runs of several processes as tables and a chart: for an experiment's figure and for
 //! `simulate --ranks`.
 
-use super::block::Block;
 use super::forecasts::serial_costs;
-use super::results::Results;
-use super::rows::{Row, gathered};
-use super::table::Digits::{Decimals, Significant};
-use super::words::counted;
-use crate::analysis::quantile::median;
 use crate::cluster::MessageCosts;
-use crate::error::Result;
 use crate::lab::{LOOK, Lab, RankRule};
-use crate::plot::{Axis, Curve, LineChart, Overlay, Point, Series};
+use crate::prelude::*;
 use crate::simulate::{Cluster, Contender, Crew, Hardware, Messages, agreement};
 
 /// Bytes sent to rank 0 for a pixel: three sums, three sums of squares, and the number of samples.

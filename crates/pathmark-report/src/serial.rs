@@ -1,13 +1,7 @@
 //! Schedules paired with the serial runs of the same image in the same repetition.
 
-use super::results::Results;
-use super::rows::paired::{Pairs, Partners, Ratio, Repeats, along, in_common, medians, with_intervals};
-use super::rows::schedule::Schedule;
-use super::rows::{Row, gathered};
-use crate::analysis::confidence_sequence::Stopping;
-use crate::error::Result;
-use crate::measure::{ImageKey, ScheduleKey};
-use std::collections::{BTreeMap, BTreeSet};
+use super::rows::paired::Pairs;
+use crate::prelude::*;
 
 /// The schedules of an experiment, and the serial runs that they are compared with.
 pub(super) struct Serial<'a> {

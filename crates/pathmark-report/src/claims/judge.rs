@@ -5,13 +5,10 @@ use super::definition::{Claim, Evidence as Kind, Report, Test};
 use super::measure::{Evidence, Measurement};
 use super::statistic::{Cases, GuardColumn, GuardValue, Statistic};
 use super::verdict::Verdict;
-use crate::analysis::Interval;
 use crate::cases_file::{self, CaseRow};
-use crate::error::Result;
 use crate::guard_prices::{self, PriceRow, read_prices};
 use crate::lab::Lab;
-use crate::results::Results;
-use std::collections::{BTreeMap, BTreeSet};
+use crate::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
 //! The gain of a hierarchy: time per ray against the number of primitives, and the gain against samples per pixel.
 
-use super::prelude::*;
+use crate::prelude::*;
 use crate::scene::ACCELERATORS;
 
 /// Rows by a number (of primitives or samples), then by accelerator.

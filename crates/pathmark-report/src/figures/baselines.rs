@@ -1,7 +1,7 @@
 //! Speedups of one schedule against several baselines of the same image, and those that exceed the number of workers.
 
-use super::prelude::*;
 use crate::analysis::speedup::{Oddity, oddity, serial_fraction_within};
+use crate::prelude::*;
 
 /// A schedule and the compiled-in effects, which distinguish the builds and schedules of an experiment.
 type Kind<'a> = (&'a Schedule, &'a str);

@@ -1,7 +1,7 @@
 //! Cost and gain of an approximation: light lost, noise and doubtful pixels by the value of one axis, against rows in
 //! which the axis has its usual value.
 
-use super::prelude::*;
+use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]

@@ -1,7 +1,7 @@
 //! Light by the number of its bounces, and the lengths of paths. Rows with growing bounce limits are the partial sums
 //! of the Neumann series, because a truncated path has the same vertices up to the limit.
 
-use super::prelude::*;
+use crate::prelude::*;
 
 /// One bounce limit of a scene.
 struct Step {

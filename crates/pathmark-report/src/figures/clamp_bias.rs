@@ -1,7 +1,7 @@
 //! The cost of clamping each subpixel before averaging: it loses light, but less with more samples.
 
-use super::prelude::*;
 use crate::analysis::mean::Moments;
+use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]

@@ -1,7 +1,7 @@
 //! The speedups that `clock()` would show: it adds up the CPU time of all threads, so it never shows a gain by
 //! parallelism.
 
-use super::prelude::*;
+use crate::prelude::*;
 
 /// The rows of a schedule on one image, and its speedups over the serial run of that image.
 struct Line<'a> {

@@ -1,9 +1,9 @@
 //! Renders at growing spp beside their reference, with maps of their error and of its visibility.
 
-use super::prelude::*;
 use crate::image_io::Image;
 use crate::metric::{Heatmap, flip_map, heatmap};
 use crate::plot::ColourBar;
+use crate::prelude::*;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Some(reference) = results.reference_image(None)? else {

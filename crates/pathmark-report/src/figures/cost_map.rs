@@ -1,7 +1,7 @@
 //! The cost of each tile, over the image: the unequal pieces that schedules have to distribute.
 
-use super::prelude::*;
 use crate::plot::{HeatMap, Tile};
+use crate::prelude::*;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let serial = results.by(|row| &row.schedule).into_iter().filter(|(schedule, _)| schedule.is_serial());

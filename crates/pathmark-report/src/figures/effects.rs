@@ -1,7 +1,7 @@
 //! The price of an effect: absent, compiled in but unused, used; and the gain of each scene from the profile that fits
 //! it.
 
-use super::prelude::*;
+use crate::prelude::*;
 use crate::scene::PROFILES;
 
 #[derive(Deserialize, Default)]

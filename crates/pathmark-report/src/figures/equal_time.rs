@@ -1,8 +1,8 @@
 //! Images of each estimator and sampler after about the same time.
 
-use super::prelude::*;
 use crate::experiment::EXTERNAL;
 use crate::image_io::Image;
+use crate::prelude::*;
 
 /// The most images in a row that fit on the page.
 const COLUMNS: usize = 4;

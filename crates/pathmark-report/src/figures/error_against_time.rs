@@ -1,8 +1,8 @@
 //! The cost of accuracy by estimator and sampler: error against seconds, a line for each, with a band for its interval
 //! over seeds.
 
-use super::prelude::*;
 use crate::contenders::{Contender, CostPoint, contenders};
+use crate::prelude::*;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let scenes = contenders(results)?;

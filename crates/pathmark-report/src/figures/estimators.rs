@@ -1,8 +1,8 @@
 //! The best estimator for each scene: seconds to the same error, relative to the estimator that is named first.
 
-use super::prelude::*;
 use crate::analysis::versus::equal_error;
 use crate::contenders::{Contender, contenders};
+use crate::prelude::*;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let scenes = contenders(results)?;

@@ -1,9 +1,9 @@
 //! Simulated schedules of the jobs measured here on other machines, and the errors of the predictions for this machine.
 
-use super::prelude::*;
 use crate::experiment::read_calibration;
 use crate::forecasts::{forecast_blocks, prediction_blocks, predictions};
 use crate::measure::THREAD_PER_ROW;
+use crate::prelude::*;
 use crate::simulate::{Contender, Forecast, Hardware, contenders, forecast};
 use std::num::NonZeroUsize;
 

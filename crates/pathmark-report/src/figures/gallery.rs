@@ -1,7 +1,7 @@
 //! The gallery: an image of every scene, with the effects that the scene needs.
 
-use super::prelude::*;
 use crate::image_io::Image;
+use crate::prelude::*;
 use crate::scene::{effect_names, load};
 
 /// The most images in a row that fit on the page.

@@ -1,6 +1,6 @@
 //! Random number generators: one shared by all threads, one for each thread, or no shared state.
 
-use super::prelude::*;
+use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]

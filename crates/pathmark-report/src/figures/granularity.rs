@@ -1,7 +1,7 @@
 //! Efficiency against the size of a job, the size at which half is lost (METG), and the overhead of a job.
 
-use super::prelude::*;
 use crate::analysis::metg::{Grain, HALF, Metg, metg};
+use crate::prelude::*;
 use crate::serial::Serial;
 
 #[derive(Deserialize, Default)]

@@ -1,9 +1,9 @@
 //! The gain of SIMD lanes: samples per second over those of the scalar kernel, by scene, instruction set and precision.
 
-use super::prelude::*;
 use crate::analysis::versus::equal_error;
 use crate::contenders::{Contender, contenders};
 use crate::kernel::DEVICE_NAME;
+use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]

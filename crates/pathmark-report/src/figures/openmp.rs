@@ -1,7 +1,7 @@
 //! Each strategy compared with one of them: OpenMP's dynamic schedule, the field's yardstick, unless the experiment
 //! names another.
 
-use super::prelude::*;
+use crate::prelude::*;
 
 /// The field's yardstick.
 const OPENMP: &str = "openmp-dynamic";

@@ -1,6 +1,6 @@
 //! More threads than processors: from more sections of the image with a thread each, and from more threads alone.
 
-use super::prelude::*;
+use crate::prelude::*;
 use crate::serial::{with_pieces, without_pieces};
 
 #[derive(Deserialize, Default)]

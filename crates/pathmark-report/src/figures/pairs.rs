@@ -1,8 +1,8 @@
 //! Pairs of contenders: seconds to the same error, and error after the same seconds.
 
-use super::prelude::*;
 use crate::analysis::versus::{equal_error, equal_time};
 use crate::contenders::{Contender, contenders};
+use crate::prelude::*;
 
 /// Two contenders, and the error and time at which they are compared.
 struct Pair<'a> {

@@ -1,8 +1,8 @@
 //! Gains and costs of single precision: time, error, light and failures, beside double precision.
 
 use super::kernels::any_kernel;
-use super::prelude::*;
 use crate::analysis::mean::t_interval;
+use crate::prelude::*;
 
 const DOUBLE: &str = "f64";
 const SINGLE: &str = "f32";

@@ -1,7 +1,7 @@
 //! The price list: samples and seconds to each accuracy, and predictions of later points from earlier ones.
 
-use super::prelude::*;
 use crate::contenders::{Check, Contender, contenders};
+use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]

@@ -1,8 +1,8 @@
 //! Simulated runs of several processes with the jobs measured here, and the errors of the predictions for this machine.
 
-use super::prelude::*;
 use crate::cluster::MessageCosts;
 use crate::experiment::{MESSAGES, read_calibration};
+use crate::prelude::*;
 use crate::rank_forecasts::{
     self, RankPlan, rank_forecast, rank_forecast_blocks, rank_prediction_blocks, rank_predictions,
 };

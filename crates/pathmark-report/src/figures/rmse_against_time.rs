@@ -1,8 +1,8 @@
 //! The cost of accuracy in time: error against seconds, a line for each schedule. All schedules of one spp render the
 //! same image with the same error; a better schedule moves the curve to the left.
 
-use super::prelude::*;
 use crate::contenders::one_per_seed;
+use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]

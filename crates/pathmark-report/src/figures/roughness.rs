@@ -2,7 +2,7 @@
 //!
 //! Scenes whose names differ only in their ending are the same image, with directions sampled in another way.
 
-use super::prelude::*;
+use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]

@@ -1,7 +1,7 @@
 //! Rules of Russian roulette: efficiency against the vertex after which it begins.
 
-use super::prelude::*;
 use crate::contenders::{Contender, contenders};
+use crate::prelude::*;
 use std::cmp::Ordering;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {

@@ -1,7 +1,7 @@
 //! Laws of speedup fitted to the measured speedups. If the points do not determine a law, the table says why.
 
-use super::prelude::*;
 use crate::analysis::scaling_law::{Fit, Law, Parameter, Point, fit};
+use crate::prelude::*;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(vec![table(results, &[Law::Amdahl, Law::Universal], "scaling-laws")?])

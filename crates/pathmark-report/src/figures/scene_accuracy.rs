@@ -1,10 +1,10 @@
 //! Error by scene at the same samples per pixel. It tests report A's claim that scenes without reflections are more
 //! accurate; a control exchanges the materials of one scene.
 
-use super::prelude::*;
 use crate::analysis::mean::t_interval;
 use crate::analysis::mse::over_seeds;
 use crate::analysis::rank::spearman;
+use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]

@@ -1,6 +1,6 @@
 //! A table of schedules: time, balance, context switches.
 
-use super::prelude::*;
+use crate::prelude::*;
 
 /// The rows of an image under a schedule, and their median time.
 struct Line<'a> {

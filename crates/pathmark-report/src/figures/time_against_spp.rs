@@ -1,7 +1,7 @@
 //! Seconds against samples per pixel: a line through the origin if only sampling takes time.
 
-use super::prelude::*;
 use crate::analysis::fit::{line, log_log};
+use crate::prelude::*;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let several = results.by(|row| row.schedule.label()).len() > 1;

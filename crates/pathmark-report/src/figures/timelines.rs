@@ -1,7 +1,7 @@
 //! Timelines: a lane for each worker, and the shares of workers times makespan.
 
-use super::prelude::*;
 use crate::analysis::balance::Balance;
+use crate::prelude::*;
 use crate::timeline;
 
 /// A run, its balance, and whether it had a processor for each worker.

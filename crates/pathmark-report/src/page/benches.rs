@@ -1,15 +1,13 @@
 //! Results of `cargo bench --bench scheduling`: it writes `benches/benches.csv` into the folder that
 //! `PATHMARK_BENCH_OUT` names.
 
-use crate::block::Block;
 use crate::csv_file;
-use crate::error::{Error, Result};
+use crate::error::Error;
 use crate::experiment::{Chapter, MACHINE, RunFile, read_run_file};
 use crate::page::Section;
-use crate::plot::{Axis, Dot, DotPlot, DotRow};
-use crate::table::Digits::Decimals;
-use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use crate::plot::Dot;
+use crate::prelude::*;
+use serde::Serialize;
 use std::path::Path;
 
 /// Name of the file's folder within the results.

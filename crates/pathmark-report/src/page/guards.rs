@@ -1,14 +1,10 @@
 //! The price list of the guards: `guards/guards.csv`, which `pathmark selftest --out` and `reproduce` write.
 
-use crate::analysis::Interval;
-use crate::block::Block;
-use crate::error::Result;
-use crate::estimated::{Estimated, LEVEL};
 use crate::experiment::{Chapter, read_run_file};
 use crate::guard_prices::{FILE, FOLDER, PriceRow, read_prices};
 use crate::page::Section;
-use crate::plot::{Axis, Dot, DotPlot, DotRow};
-use crate::table::Digits::{Decimals, Significant};
+use crate::plot::Dot;
+use crate::prelude::*;
 use std::path::Path;
 
 const QUESTION: &str = "What does it cost to be right on hard inputs, and how wrong is what would do on easy ones?";
