@@ -6,13 +6,11 @@
 //! "Quantifying the effectiveness of load balance algorithms", ICS 2012). All times are in seconds since the run's
 //! start.
 
-use serde::Serialize;
-
 /// One job's time: its worker, its start and its stop.
 pub type Span = (usize, f64, f64);
 
 /// The time of one worker, by its use.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Share {
     pub jobs: usize,
     pub busy_s: f64,
@@ -22,7 +20,7 @@ pub struct Share {
 }
 
 /// The time of all workers, by its use.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Balance {
     pub makespan_s: f64,
     pub workers: Vec<Share>,

@@ -7,8 +7,6 @@
 //! target several times. The largest granularity at which it rises through the target is then used, the cautious
 //! answer, and the result gives the number of crossings.
 
-use serde::Serialize;
-
 use super::bootstrap;
 use super::interval::Interval;
 use super::quantile::median;
@@ -20,8 +18,7 @@ pub const HALF: f64 = 0.5;
 pub type Grain = (f64, Vec<f64>);
 
 /// The minimum effective granularity.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Metg {
     /// The efficiency rises through the target.
     Value {
@@ -43,8 +40,7 @@ pub enum Metg {
     Undefined(Undefined),
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Undefined {
     /// No granularity, one without an efficiency, a value that is not finite, or a duration that is not positive.
     NoData,

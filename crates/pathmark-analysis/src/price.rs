@@ -9,15 +9,12 @@
 //! uses the mean of two exponents: the one of the last octaves and the one of independent samples. The interval reaches
 //! from a somewhat larger exponent to the exponent of independent samples.
 
-use serde::Serialize;
-
 use super::fit::{Sums, logarithms};
 use super::interval::{Estimate, Interval};
 use super::jackknife::{Curve, SeedCurves};
 
 /// How the squared error continues beyond the measured points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Law {
     /// As 1/n, for independent samples.
     Independent,
@@ -116,7 +113,7 @@ pub struct Renderer {
     pub seconds_per_spp: Estimate,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Price {
     /// The goal.
     pub rmse: f64,
@@ -165,6 +162,18 @@ impl Renderer {
         let variance = self.curves.positive_estimate(level, |curve| Some(curve.last()?.1 * spp))?;
         variance.times(&self.seconds_per_spp)?.inverse()
     }
+}
+
+/// Returns the seconds of `a` to reach an RMSE over the seconds of `b`: below 1 if `a` is better. Both are assumed to
+/// be independent, so the interval is wider than necessary if they share samples.
+pub fn equal_error(a: &Renderer, b: &Renderer, rmse: f64) -> Option<Estimate> {
+    a.price(rmse)?.seconds.times(&b.price(rmse)?.seconds.inverse()?)
+}
+
+/// Returns the RMSE of `a` over the RMSE of `b` after the same `seconds`. For independent samples, it is the square
+/// root of [`equal_error`].
+pub fn equal_time(a: &Renderer, b: &Renderer, seconds: f64) -> Option<Estimate> {
+    a.rmse_after(seconds)?.times(&b.rmse_after(seconds)?.inverse()?)
 }
 
 #[cfg(test)]
@@ -273,5 +282,27 @@ mod tests {
         assert_eq!(Law::Independent.spp(&vec![], 0.1), None);
         assert_eq!(Law::Independent.spp(&vec![(1.0, -1.0)], 0.1), None);
         assert_eq!(Law::Independent.spp(&power(1.0, -1.0), 0.0), None);
+    }
+
+    fn of_variance(variance: f64, per_spp: f64) -> Renderer {
+        let curve = |factor: f64| vec![(16.0, factor * variance / 16.0)];
+        let interval = Interval { low: 0.99 * per_spp, high: 1.01 * per_spp, level: 0.95 };
+        Renderer {
+            curves: SeedCurves::of_errors(&[curve(0.98), curve(1.0), curve(1.02), curve(1.0)]).unwrap(),
+            law: Law::Independent,
+            seconds_per_spp: Estimate { value: per_spp, interval },
+        }
+    }
+
+    #[test]
+    fn six_times_less_variance_for_half_more_time() {
+        let (plain, better) = (of_variance(6.0, 1.0), of_variance(1.0, 1.5));
+        let time = equal_error(&better, &plain, 0.01).unwrap();
+        let error = equal_time(&better, &plain, 100.0).unwrap();
+        assert!((time.value - 0.25).abs() < 1e-4 && time.interval.contains(0.25), "{time:?}");
+        assert!((error.value - 0.5).abs() < 1e-4 && error.interval.contains(0.5), "{error:?}");
+        assert!((time.interval.high / time.value - 1.0).abs() < 0.05 && !time.interval.contains(0.27));
+        let back = equal_error(&plain, &better, 0.01).unwrap();
+        assert!((back.value - 4.0).abs() < 1e-3);
     }
 }

@@ -6,14 +6,12 @@
 //! logarithm of a scattered error is on average below the logarithm of its expectation, by half its squared variation.
 //! The difference is larger where few samples meet a heavy tail, and it tilts every curve in the same direction.
 
-use serde::Serialize;
-
 use super::fit::{Sums, logarithms};
 use super::interval::Estimate;
 use super::jackknife::{Curve, SeedCurves};
 
 /// RMSE = exp(`log_scale`) x^exponent.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PowerLaw {
     /// The exponent, with an interval over the seeds.
     pub exponent: Estimate,

@@ -24,8 +24,6 @@ mod reason;
 #[cfg(test)]
 mod tests;
 
-use serde::Serialize;
-
 use super::bootstrap;
 use super::interval::Estimate;
 
@@ -35,8 +33,7 @@ pub use reason::Reason;
 /// Workers p and the speedup of each repetition.
 pub type Point = (usize, Vec<f64>);
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Law {
     /// p / S - 1 = s (p - 1).
     Amdahl,
@@ -46,7 +43,7 @@ pub enum Law {
     Universal,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameter {
     pub name: &'static str,
     /// Its value, without a unit, and the bootstrap interval.
@@ -54,7 +51,7 @@ pub struct Parameter {
 }
 
 /// A fitted law, with the check of its residuals.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Fitted {
     pub law: Law,
     /// s; or sigma and kappa.
@@ -68,8 +65,7 @@ pub struct Fitted {
     pub worker_counts: usize,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Fit {
     Found(Fitted),
     /// The parameters can't be identified, for this reason.

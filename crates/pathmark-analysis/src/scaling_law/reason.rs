@@ -2,13 +2,10 @@
 
 use std::fmt;
 
-use serde::Serialize;
-
 use super::Parameter;
 
 /// The reason why a fit gives no parameters.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reason {
     /// A speedup that is not positive and finite, or no worker at all.
     NotASpeedup,

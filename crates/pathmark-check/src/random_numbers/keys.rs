@@ -2,7 +2,7 @@
 
 use super::first;
 use super::unguarded::{fmix64, key_of_32_bits, wang_hash, xorshift32};
-use crate::analysis::randomness::repeats::{repeated, repeated_words};
+use crate::analysis::randomness::{repeated, repeated_words};
 use crate::measure::LARGEST_SEED;
 use crate::samplers::keyed;
 use crate::sampling::{Address, Purpose, REFERENCE_SEEDS, SampleKey, Sampler, mix};

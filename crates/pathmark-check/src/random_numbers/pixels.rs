@@ -3,7 +3,7 @@
 use super::first;
 use super::unguarded::{draw, sequential_state, sequential_stream};
 use crate::analysis::chi_square::{even, score};
-use crate::analysis::randomness::correlation::of_uniform as correlation;
+use crate::analysis::randomness::correlation;
 use crate::level::critical;
 use crate::samplers::keyed;
 use crate::sampling::{Purpose, is_spread};

@@ -3,7 +3,7 @@
 use super::first;
 use super::unguarded::{erand48, lcg_of_pixel, smallpt_row};
 use crate::analysis::chi_square::even;
-use crate::analysis::randomness::correlation::of_uniform as correlation;
+use crate::analysis::randomness::correlation;
 use crate::level::critical;
 use crate::samplers::keyed;
 use crate::sampling::{Address, Purpose, SampleKey};

@@ -1,6 +1,6 @@
 //! The best estimator for each scene: seconds to the same error, relative to the estimator that is named first.
 
-use crate::analysis::versus::equal_error;
+use crate::analysis::price::equal_error;
 use crate::contenders::{Contender, contenders};
 use crate::prelude::*;
 

@@ -1,6 +1,6 @@
 //! The gain of SIMD lanes: samples per second over those of the scalar kernel, by scene, instruction set and precision.
 
-use crate::analysis::versus::equal_error;
+use crate::analysis::price::equal_error;
 use crate::contenders::{Contender, contenders};
 use crate::kernel::DEVICE_NAME;
 use crate::prelude::*;

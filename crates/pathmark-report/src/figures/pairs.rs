@@ -1,6 +1,6 @@
 //! Pairs of contenders: seconds to the same error, and error after the same seconds.
 
-use crate::analysis::versus::{equal_error, equal_time};
+use crate::analysis::price::{equal_error, equal_time};
 use crate::contenders::{Contender, contenders};
 use crate::prelude::*;
 

@@ -1,8 +1,7 @@
 //! Speedup against `serial`, efficiency, and the serial fraction by Karp and Flatt, which explains the missing speedup.
 
 use crate::analysis::scaling_law::{Check, Fit, Fitted, Law, fit};
-use crate::analysis::speedup::{Oddity, efficiency, oddity, serial_fraction_within};
-use crate::analysis::superlinear::{Evidence, cause};
+use crate::analysis::speedup::{Evidence, Oddity, cause, efficiency, oddity, serial_fraction_within};
 use crate::measure::TimingConcerns;
 use crate::prelude::*;
 use crate::schedule::is_of_ranks;
