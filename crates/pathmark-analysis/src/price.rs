@@ -54,12 +54,8 @@ impl Beyond {
 const LAST_OCTAVES: f64 = 16.0;
 
 impl Law {
-    /// Returns the samples per pixel at which the curve reaches `rmse`.
-    pub fn spp(self, curve: &Curve, rmse: f64) -> Option<f64> {
-        self.spp_if(curve, rmse, Beyond::Between)
-    }
-
-    fn spp_if(self, curve: &Curve, rmse: f64, beyond: Beyond) -> Option<f64> {
+    /// The samples per pixel at which the curve reaches `rmse`.
+    fn spp(self, curve: &Curve, rmse: f64, beyond: Beyond) -> Option<f64> {
         let (points, goal) = (logarithms(curve)?, libm::log(rmse * rmse));
         let line = self.line(&points, |&(_, mse)| mse <= goal, beyond)?;
         Some(libm::exp(line.x + (goal - line.y) / line.slope)).filter(|spp| spp.is_finite())
@@ -127,7 +123,7 @@ impl Renderer {
     /// that is not positive, for fewer than two points where the law is fitted, or for curves that do not fall.
     pub fn price(&self, rmse: f64) -> Option<Price> {
         let level = self.seconds_per_spp.interval.level;
-        let spp = self.widened(level, |curve, beyond| self.law.spp_if(curve, rmse, beyond))?;
+        let spp = self.widened(level, |curve, beyond| self.law.spp(curve, rmse, beyond))?;
         Some(Price { rmse, spp, seconds: spp.times(&self.seconds_per_spp)? })
     }
 

@@ -33,6 +33,20 @@ pub(crate) fn print_verbatim(text: &str) -> Result<()> {
     }
 }
 
+/// Columns under their heads. The first is aligned to the left, the others to the right if `is_of_numbers`.
+pub(crate) fn aligned(heads: Vec<String>, rows: impl IntoIterator<Item = Vec<String>>, is_of_numbers: bool) -> String {
+    let lines: Vec<Vec<String>> = std::iter::once(heads).chain(rows).collect();
+    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..lines[0].len()).map(width).collect();
+    let aligned = |line: &Vec<String>| {
+        let cell = |(column, (text, width)): (usize, (&String, &usize))| {
+            if is_of_numbers && column > 0 { format!("{text:>width$}") } else { format!("{text:width$}") }
+        };
+        line.iter().zip(&widths).enumerate().map(cell).collect::<Vec<_>>().join("  ").trim_end().to_string()
+    };
+    lines.iter().map(aligned).collect::<Vec<_>>().join("\n")
+}
+
 /// Prints a value as one line of JSON. Absent values are `null`; NaN and infinities, for which JSON has no numbers, are
 /// the texts "NaN", "inf" and "-inf".
 pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {

@@ -20,23 +20,11 @@ enum Kind {
     Scene,
 }
 
-impl Kind {
-    fn text(self) -> &'static str {
-        match self {
-            Self::Experiment => include_str!("../../assets/starter-experiment.toml"),
-            Self::Scene => include_str!("../../assets/starter-scene.toml"),
-        }
-    }
-
-    fn verb(self) -> &'static str {
-        match self {
-            Self::Experiment => "run",
-            Self::Scene => "render",
-        }
-    }
-}
-
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
+    let (text, verb) = match arguments.kind {
+        Kind::Experiment => (include_str!("../../assets/starter-experiment.toml"), "run"),
+        Kind::Scene => (include_str!("../../assets/starter-scene.toml"), "render"),
+    };
     if arguments.name.file_name().is_none() || arguments.name.as_os_str().as_encoded_bytes().ends_with(b"/") {
         return Err(InputError::new("name", arguments.name.display().to_string(), "is not the name of a file").into());
     }
@@ -56,6 +44,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         };
         InputError::new("name", &shown, problem).allowed("a new name in a folder that exists").into()
     })?;
-    file.write_all(arguments.kind.text().as_bytes()).map_err(|e| Error::system("writing", &path, e))?;
-    print(&format!("created {shown}; edit it, then run: {}", shell::command([arguments.kind.verb(), &shown])))
+    file.write_all(text.as_bytes()).map_err(|e| Error::system("writing", &path, e))?;
+    print(&format!("created {shown}; edit it, then run: {}", shell::command([verb, &shown])))
 }

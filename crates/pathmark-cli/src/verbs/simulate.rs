@@ -3,6 +3,7 @@
 use super::prelude::*;
 use super::run::note_doubts;
 use crate::cluster::MessageCosts;
+use crate::console::output::aligned;
 use crate::experiment::{MESSAGES, read_calibration};
 use crate::measure::{CalibrationRow, ForeignLoad, SERIAL, TimingConcerns, TraceFile, available_threads, calibrate};
 use crate::report::rank_forecasts::{self, RankPlan};
@@ -341,30 +342,13 @@ fn show(blocks: &[Block]) -> Result<()> {
         match block {
             Block::Finding(text) | Block::Notice(text) => print(&format!("{text}\n"))?,
             Block::Table { table, .. } => {
-                let (heads, rows): (Vec<String>, Vec<_>) =
-                    (table.heads().map(str::to_string).collect(), table.rows().collect());
-                print(&format!("{}\n{}", table.title, aligned(&heads, &rows)))?;
+                let heads = table.heads().map(str::to_string).collect();
+                print(&format!("{}\n{}", table.title, aligned(heads, table.rows(), true)))?;
             }
             Block::Figure { .. } | Block::Picture { .. } => {}
         }
     }
     Ok(())
-}
-
-/// Columns under their heads, the first to the left and the others to the right.
-fn aligned(columns: &[String], rows: &[Vec<String>]) -> String {
-    let width = |column: usize| {
-        rows.iter().map(|row| row[column].chars().count()).chain([columns[column].chars().count()]).max().unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..columns.len()).map(width).collect();
-    let line = |cells: &[String]| {
-        let cell = |(column, text): (usize, &String)| {
-            let width = widths[column];
-            if column == 0 { format!("{text:width$}") } else { format!("{text:>width$}") }
-        };
-        cells.iter().enumerate().map(cell).collect::<Vec<_>>().join("  ")
-    };
-    std::iter::once(line(columns)).chain(rows.iter().map(|row| line(row))).collect::<Vec<_>>().join("\n")
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The judgement of claims by the results in some folders.
 
 use super::condition::{Columns, Conditions};
-use super::definition::{Claim, Evidence as Kind, Report, Test};
+use super::definition::{Claim, Report, Test};
 use super::measure::{Evidence, Measurement};
 use super::statistic::{Cases, GuardColumn, GuardValue, Statistic};
 use super::verdict::Verdict;
@@ -52,10 +52,9 @@ pub fn judge<'a>(lab: &Arc<Lab>, reports: &'a [Report], folders: &[PathBuf]) -> 
     for (report, claim) in claims {
         let answer =
             |verdict, why: &str| Answer { report, claim, verdict, why: why.to_string(), source: None, found: None };
-        answers.push(match claim.evidence() {
-            Kind::Context(why) => answer(Verdict::Context, why),
-            Kind::Missing(why) => answer(Verdict::NotAnswered, why),
-            Kind::Test(test) => {
+        answers.push(match claim.test() {
+            Err((verdict, why)) => answer(verdict, why),
+            Ok(test) => {
                 let mut best = answer(Verdict::NotAnswered, "The results have no such rows.");
                 for library in &mut libraries {
                     let found = library.answer(report, claim, test)?;

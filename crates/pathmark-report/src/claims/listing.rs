@@ -1,6 +1,6 @@
 //! Lists of verdicts: files, which a run with fewer rows must not replace, and a section of the page.
 
-use super::definition::{Evidence, Report};
+use super::definition::Report;
 use super::judge::Answer;
 use super::verdict::{NAMES, Verdict};
 use crate::atomic_file;
@@ -37,7 +37,7 @@ impl Answer<'_> {
 
     /// The values that the report predicts.
     pub fn predicted(&self) -> String {
-        let Evidence::Test(test) = self.claim.evidence() else { return "-".to_string() };
+        let Ok(test) = self.claim.test() else { return "-".to_string() };
         let short = |value: f64| number::short(value, 3);
         match test.predicted {
             [low, high] if low == high => short(low),
@@ -49,10 +49,7 @@ impl Answer<'_> {
 
     /// The statistic in words.
     fn question(&self) -> String {
-        match self.claim.evidence() {
-            Evidence::Test(test) => test.statistic.to_string(),
-            _ => String::new(),
-        }
+        self.claim.test().map_or_else(|_| String::new(), |test| test.statistic.to_string())
     }
 
     fn level(&self) -> Option<f64> {
