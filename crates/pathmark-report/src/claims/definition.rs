@@ -86,7 +86,7 @@ pub struct Claim {
 
 /// A statistic of measured rows, and the values that the report's claim predicts for it.
 #[derive(Debug)]
-pub struct Test {
+pub(super) struct Test {
     pub(super) statistic: Statistic,
     /// The ends of the prediction; a side without a limit is infinite.
     pub(super) predicted: [f64; 2],

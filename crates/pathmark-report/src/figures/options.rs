@@ -49,7 +49,7 @@ pub(crate) fn yardstick(results: &Results, figure: &str, default: &str) -> Resul
 /// A number above zero.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "f64")]
-pub(crate) struct Positive(pub(super) f64);
+pub(crate) struct Positive(pub(crate) f64);
 
 impl TryFrom<f64> for Positive {
     type Error = &'static str;
