@@ -19,7 +19,6 @@ pub struct Share {
     pub tail_s: f64,
 }
 
-/// The time of all workers, by its use.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Balance {
     pub makespan_s: f64,

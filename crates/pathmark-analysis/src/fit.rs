@@ -20,7 +20,8 @@ pub fn line(points: &[(f64, f64)], level: f64) -> Option<Line> {
     let freedom = points.len().checked_sub(2).filter(|&freedom| freedom > 0)?;
     let sums = Sums::of(points)?;
     let (slope, intercept) = (sums.slope(), sums.intercept());
-    let residual: f64 = points.iter().map(|&(x, y)| y - sums.at(x)).map(|error| error * error).sum();
+    let residual: f64 =
+        points.iter().map(|&(x, y)| y - (sums.y + slope * (x - sums.x))).map(|error| error * error).sum();
     let variance = residual / freedom as f64;
     let slope_error = (variance / sums.xx).sqrt();
     let intercept_error = (variance * (1.0 / points.len() as f64 + sums.x * sums.x / sums.xx)).sqrt();
@@ -69,10 +70,6 @@ impl Sums {
 
     pub(super) fn intercept(&self) -> f64 {
         self.y - self.slope() * self.x
-    }
-
-    fn at(&self, x: f64) -> f64 {
-        self.y + self.slope() * (x - self.x)
     }
 }
 

@@ -28,7 +28,6 @@ impl Interval {
     }
 }
 
-/// An estimate and its confidence interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Estimate {
     pub value: f64,

@@ -78,6 +78,11 @@ impl Contender {
         })
     }
 
+    /// The variance of a sample at the end of its curve.
+    pub(super) fn variance(&self) -> Option<f64> {
+        self.renderer.curves.whole().last().map(|(spp, mse)| spp * mse)
+    }
+
     /// Predicts the other seeds from the first half of the seeds and up to a quarter of the samples. `None` below six
     /// seeds or two points in that quarter.
     pub(super) fn check(&self) -> Option<Check> {

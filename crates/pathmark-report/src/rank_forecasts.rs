@@ -10,7 +10,6 @@ use crate::simulate::{Cluster, Contender, Crew, Hardware, Messages, agreement};
 /// Bytes sent to rank 0 for a pixel: three sums, three sums of squares, and the number of samples.
 const PIXEL_BYTES: f64 = 56.0;
 
-/// Messages with the measured costs, for the simulation.
 pub fn messages(costs: &MessageCosts) -> Messages {
     let needs_rank_0 = (costs.fetch_while_rendering_s() - costs.fetch_s()) / LOOK.as_secs_f64();
     Messages {
@@ -33,7 +32,6 @@ pub struct RankPrediction {
     ratio: f64,
 }
 
-/// One row of a forecast.
 pub struct RankForecast {
     rule: String,
     strategy: String,

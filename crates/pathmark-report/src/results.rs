@@ -35,7 +35,6 @@ pub struct Results {
 }
 
 impl Results {
-    /// Reads a folder that a sweep wrote.
     pub fn read(lab: &Arc<Lab>, out: &Path, folder: &Path) -> Result<Self> {
         let path = folder.join("experiment.toml");
         let name = folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());

@@ -50,7 +50,6 @@ pub struct Parameter {
     pub estimate: Estimate,
 }
 
-/// A fitted law, with the check of its residuals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fitted {
     pub law: Law,

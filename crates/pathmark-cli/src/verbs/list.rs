@@ -62,12 +62,6 @@ fn about_column(column: &Column) -> String {
     format!("{} [{}{unit}{empty}; since schema {}]", column.about.trim(), column.values(), column.since)
 }
 
-/// The name that a driver gives a device, or why there is none.
-#[cfg(feature = "device")]
-fn about_device(device: &Device) -> String {
-    if device.is_there { device.about.clone() } else { format!("none: {}", device.about) }
-}
-
 fn scene_item(lab: &Lab, name: &str) -> Result<Item> {
     let scene = lab.load_scene(name)?;
     let choice = choose(&scene, &Spec::default())?;
@@ -105,7 +99,10 @@ const KINDS: &[(&str, Items)] = &[
     }),
     ("simd", named!(LEVELS)),
     #[cfg(feature = "device")]
-    ("devices", |_| Ok(devices().iter().map(|device| item(&device.id, &about_device(device))).collect())),
+    ("devices", |_| {
+        let about = |device: &Device| format!("{}{}", if device.is_there { "" } else { "none: " }, device.about);
+        Ok(devices().iter().map(|device| item(&device.id, &about(device))).collect())
+    }),
     ("effects", named!(PROFILES)),
     ("accelerators", named!(ACCELERATORS)),
     ("cameras", |_| Ok(CAMERAS.iter().map(|(name, about)| item(name, about)).collect())),

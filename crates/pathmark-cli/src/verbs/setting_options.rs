@@ -46,9 +46,11 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    /// Settings of these samples, with the default schedule.
-    pub(super) fn settings(&self, lab: &Lab) -> Result<Settings> {
-        self.what.settings(lab, &self.scene, self.spp, self.seed)
+    /// Reads their scene, and prints remarks about it. The schedule is the default one.
+    pub(super) fn prepare(&self, lab: &Arc<Lab>, console: &Console) -> Result<Setup> {
+        let setup = lab.prepare(self.what.settings(lab, &self.scene, self.spp, self.seed)?)?;
+        setup.remarks().iter().for_each(|remark| console.note(remark));
+        Ok(setup)
     }
 }
 

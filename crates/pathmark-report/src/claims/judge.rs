@@ -12,7 +12,6 @@ use crate::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The answer of the results to a claim.
 #[derive(Debug)]
 pub struct Answer<'a> {
     pub report: &'a Report,

@@ -5,7 +5,6 @@ use std::fmt;
 
 pub(super) const NAMES: [&str; 6] = ["confirmed", "refuted", "open", "not-comparable", "not-answered", "context"];
 
-/// The result of the measurements for a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// The whole interval lies within the prediction.

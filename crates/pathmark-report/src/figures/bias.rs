@@ -47,7 +47,7 @@ struct Cost {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { axis, usual } = options(results, "bias")?;
+    let Options { axis, usual } = options(&results.definition, "bias")?;
     let (name, of, forget) = axis.unwrap_or(Varied::Epsilon).parts();
     let usual = usual.unwrap_or_else(|| "none".to_string());
     let mut costs = costs(results, of, forget, &usual);

@@ -41,7 +41,7 @@ struct Line<'a> {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { compare } = options(results, "generators")?;
+    let Options { compare } = options(&results.definition, "generators")?;
     let crews: BTreeSet<(usize, String)> =
         results.by(|row| &row.schedule).into_keys().map(|schedule| (schedule.key.threads, crew(schedule))).collect();
     // Times of different images must not be mixed.

@@ -87,7 +87,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("how sure", |(_, [_, remark])| remark.clone())
         .end();
     let mut blocks = vec![Block::figure("granularity", chart), table, overhead(results, &baseline)];
-    let Options { compare } = options(results, "granularity")?;
+    let Options { compare } = options(&results.definition, "granularity")?;
     if let Some([first, second]) = compare {
         blocks.extend(compared(results, &first, &second)?);
     }
@@ -152,7 +152,7 @@ fn in_words(found: &Metg) -> [String; 2] {
         }
         Metg::Below(least) => [format!("< {}", microseconds(*least)), "even the smallest jobs keep half".to_string()],
         Metg::Above(most) => [format!("> {}", microseconds(*most)), "even the largest jobs do not".to_string()],
-        Metg::Undefined(reason) => ["-".to_string(), reason.to_string()],
+        Metg::Undefined(reason) => ["-".to_string(), (*reason).to_string()],
     }
 }
 

@@ -55,7 +55,7 @@ fn works<'a>(results: &'a Results, yardstick: &str) -> Result<Vec<Vec<Line<'a>>>
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { yardstick, goal } = options(results, "kernels")?;
+    let Options { yardstick, goal } = options(&results.definition, "kernels")?;
     let (yardstick, goal) = (yardstick.unwrap_or_else(|| "scalar".to_string()), goal.map_or(0.01, |goal| goal.0));
     let works = works(results, &yardstick)?;
     if works.is_empty() {

@@ -131,19 +131,12 @@ pub fn check_figures(definition: &Definition) -> Result<()> {
             .in_file(&definition.file, at)
             .into());
     }
-    check_tables(definition)
-}
-
-/// Refuses tables for figures that the definition does not list, and options that a figure does not have.
-fn check_tables(definition: &Definition) -> Result<()> {
-    for name in definition.figure.keys() {
-        if !definition.figures.contains(name) {
-            let at = place(&definition.text, name);
-            return Err(InputError::new("figure", name, "has parameters, but `figures` does not list it")
-                .allowed(definition.figures.join(", "))
-                .in_file(&definition.file, at)
-                .into());
-        }
+    if let Some(name) = definition.figure.keys().find(|name| !definition.figures.contains(name)) {
+        let at = place(&definition.text, name);
+        return Err(InputError::new("figure", name, "has parameters, but `figures` does not list it")
+            .allowed(definition.figures.join(", "))
+            .in_file(&definition.file, at)
+            .into());
     }
     let mut listed = FIGURES.iter().filter(|entry| definition.figure.contains_key(entry.name));
     listed.try_for_each(|entry| (entry.check)(definition, entry.name))

@@ -9,11 +9,7 @@ use serde::{Deserialize, Serialize};
 
 /// The options of a figure. A definition without such a table, as in old folders, gets the options of the experiment of
 /// the same name that the program contains.
-pub(crate) fn options<T: DeserializeOwned + Default>(results: &Results, figure: &str) -> Result<T> {
-    read(&results.definition, figure)
-}
-
-fn read<T: DeserializeOwned + Default>(definition: &Definition, figure: &str) -> Result<T> {
+pub(crate) fn options<T: DeserializeOwned + Default>(definition: &Definition, figure: &str) -> Result<T> {
     let path = ["figure", figure];
     if definition.figure.contains_key(figure) {
         return Ok(parse_within(&definition.text, &definition.file, &path)?.unwrap_or_default());
@@ -25,7 +21,7 @@ fn read<T: DeserializeOwned + Default>(definition: &Definition, figure: &str) ->
 
 /// Refuses options that a figure does not have.
 pub(crate) fn check<T: DeserializeOwned + Default>(definition: &Definition, figure: &str) -> Result<()> {
-    read::<T>(definition, figure).map(|_: T| ())
+    options(definition, figure).map(|_: T| ())
 }
 
 /// The options of a figure that has none.
@@ -42,7 +38,7 @@ pub(crate) struct Yardstick {
 
 /// The name of the yardstick, which the others are compared with.
 pub(crate) fn yardstick(results: &Results, figure: &str, default: &str) -> Result<String> {
-    let found: Yardstick = options(results, figure)?;
+    let found: Yardstick = options(&results.definition, figure)?;
     Ok(found.yardstick.unwrap_or_else(|| default.to_string()))
 }
 

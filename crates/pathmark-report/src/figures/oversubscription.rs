@@ -30,7 +30,7 @@ const GRID: &str = "grid:";
 type Lines = BTreeMap<String, Vec<Point>>;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { claim } = options(results, "oversubscription")?;
+    let Options { claim } = options(&results.definition, "oversubscription")?;
     let (mut by_grid, mut by_threads) = (Vec::new(), Vec::new());
     let groups = results.by(|row| (&row.schedule, results.series_name(row), row.spp)).into_iter();
     let cells = groups.map(|(key, rows)| {

@@ -2,6 +2,7 @@
 
 use super::kernels::any_kernel;
 use crate::analysis::mean::t_interval;
+use crate::contenders::root_of_mean;
 use crate::prelude::*;
 
 const DOUBLE: &str = "f64";
@@ -50,10 +51,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     plot.subtitle = results.run.machine.line();
     plot.caption =
         "Mean over seeds, both precisions with the same random numbers to fewer digits. Bars: 95 %.".to_string();
-    let rmse = |rows: &[&Row]| {
-        let mse = values(rows, |row| row.mse);
-        (mse.iter().sum::<f64>() / mse.len() as f64).sqrt()
-    };
+    let rmse = |rows: &[&Row]| root_of_mean(&values(rows, |row| row.mse));
     let sum = |rows: &[&Row], count: fn(&Row) -> Option<u64>| {
         rows.iter().filter_map(|row| count(row)).sum::<u64>().to_string()
     };

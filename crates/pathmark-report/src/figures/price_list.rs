@@ -11,7 +11,7 @@ pub(super) struct Options {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let goals = options::<Options>(results, "price-list")?.goals;
+    let goals = options::<Options>(&results.definition, "price-list")?.goals;
     let goals = goals.unwrap_or_else(|| [0.1, 0.05, 0.02, 0.01].map(Positive).to_vec());
     let scenes = contenders(results)?;
     let all: Vec<&Contender> = scenes.values().flatten().collect();

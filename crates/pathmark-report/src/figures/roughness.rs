@@ -21,7 +21,8 @@ struct Pair<'a> {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let by_facets = options::<Options>(results, "roughness")?.by_facets.unwrap_or_else(|| "-vndf".to_string());
+    let by_facets =
+        options::<Options>(&results.definition, "roughness")?.by_facets.unwrap_or_else(|| "-vndf".to_string());
     let rows = results.by(|row| row.scene.as_str());
     let base = |scene: &'_ str| scene.strip_suffix(by_facets.as_str()).unwrap_or(scene).len();
     let scenes: BTreeSet<(usize, &str)> = rows.keys().map(|scene| (base(scene), &scene[..base(scene)])).collect();

@@ -55,7 +55,7 @@ impl Accuracy {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { goal, control } = options(results, "scene-accuracy")?;
+    let Options { goal, control } = options(&results.definition, "scene-accuracy")?;
     let mut scenes = accuracies(results)?;
     if scenes.is_empty() {
         let text = "There is no accuracy by scene: it takes errors against references, and the kept images.";

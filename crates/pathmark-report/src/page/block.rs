@@ -38,7 +38,6 @@ impl Block {
         Self::Figure { stem, figure: Box::new(figure) }
     }
 
-    /// A sheet of images.
     pub(crate) fn sheet(stem: &'static str, sheet: &ContactSheet) -> Result<Self> {
         let (png, images) = sheet.png()?;
         Ok(Self::Picture { stem, title: sheet.title.clone(), png, comparison: sheet.comparison, images })

@@ -20,7 +20,6 @@ const REDUCED: u32 = 224;
 /// Space between images.
 const GAP: f64 = 16.0;
 
-/// One image with its caption.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cell {
     /// Lines above the image: the first is the title.
@@ -86,7 +85,17 @@ pub struct ContactSheet {
     pub comparison: Comparison,
 }
 
+/// The most images in a row that fit on the page.
+const COLUMNS: usize = 4;
+
 impl ContactSheet {
+    /// A sheet of images in rows that fit on a page.
+    pub fn grid(title: String, subtitle: String, cells: Vec<Cell>, comparison: Comparison) -> Self {
+        let cells: Vec<Option<Cell>> = cells.into_iter().map(Some).collect();
+        let rows = cells.chunks(COLUMNS).map(<[Option<Cell>]>::to_vec).collect();
+        Self { title, subtitle, rows, bars: Vec::new(), comparison }
+    }
+
     /// The sheet as pixels, and the areas of its images.
     pub fn pixels(&self) -> Result<(RgbImage, Vec<Placed>)> {
         let rows = self.rows.iter().map(|row| row.iter().map(|cell| cell.as_ref().map(shown).transpose()).collect());

@@ -20,7 +20,6 @@ const GROUP: f64 = 11.0;
 /// Width of a guide's line.
 const GUIDE: f64 = 1.5;
 
-/// A value and its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dot {
     /// The value, in the axis' unit.

@@ -56,7 +56,6 @@ pub struct Schedule {
     pub workers: usize,
     /// Seconds from start to end.
     pub makespan_s: f64,
-    /// The jobs, in any order.
     pub jobs: Vec<JobBar>,
 }
 

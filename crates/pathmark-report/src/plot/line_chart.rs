@@ -14,7 +14,6 @@ use std::collections::HashMap;
 /// Width of a fitted line: thinner than the data it belongs to.
 const FIT_LINE: f64 = 1.5;
 
-/// A point, with the intervals of its coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
     pub x: f64,
@@ -59,7 +58,6 @@ pub enum Spread {
     Band,
 }
 
-/// Points that belong together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
     pub name: String,

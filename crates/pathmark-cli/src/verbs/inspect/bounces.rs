@@ -27,9 +27,7 @@ const SHOWN: usize = 16;
 const REPORTED: usize = 6;
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
-    let settings = arguments.samples.settings(lab)?;
-    let setup = lab.prepare(settings)?;
-    setup.remarks().iter().for_each(|remark| console.note(remark));
+    let setup = arguments.samples.prepare(lab, console)?;
     let Some((scene, choice)) = setup.scene() else { return Err(no_paths(&arguments.samples.scene)) };
     let spec = &setup.settings().spec;
     let mut files = Files::default();

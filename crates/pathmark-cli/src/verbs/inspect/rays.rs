@@ -33,9 +33,7 @@ pub(crate) struct Arguments {
 const LEVEL: f64 = 0.95;
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
-    let settings = arguments.samples.settings(lab)?;
-    let setup = lab.prepare(settings)?;
-    setup.remarks().iter().for_each(|remark| console.note(remark));
+    let setup = arguments.samples.prepare(lab, console)?;
     let Some((scene, choice)) = setup.scene() else { return Err(no_paths(&arguments.samples.scene)) };
     check_paths(&setup)?;
     let mut files = Files::default();
