@@ -195,9 +195,9 @@ mod tests {
         // MSE = 4/n: an RMSE of 0.1 takes 400 samples; MSE = 4 n^-1.6: 400^(1/1.6) of them.
         let independent = power(4.0, -1.0);
         for law in [Law::Independent, Law::Fitted] {
-            assert!((law.spp(&independent, 0.1).unwrap() - 400.0).abs() < 1e-9, "{law:?}");
+            assert!((law.spp(&independent, 0.1, Beyond::Between).unwrap() - 400.0).abs() < 1e-9, "{law:?}");
             assert!((law.rmse(&independent, 400.0).unwrap() - 0.1).abs() < 1e-12, "{law:?}");
-            assert!((law.spp(&independent, 0.8).unwrap() - 6.25).abs() < 1e-9, "{law:?}, inside");
+            assert!((law.spp(&independent, 0.8, Beyond::Between).unwrap() - 6.25).abs() < 1e-9, "{law:?}, inside");
             assert!((law.rmse(&independent, 0.25).unwrap() - 4.0).abs() < 1e-9, "{law:?}, before the first");
         }
         // Beyond 16 samples, from MSE = 4 / 16^1.6: with 1.3 times the exponent -1.6, with the mean of -1.6 and -1, and
@@ -206,14 +206,20 @@ mod tests {
         let missing = 400.0 / libm::pow(16.0, 1.6);
         let expected = [(Beyond::Steeper, 2.08), (Beyond::Between, 1.3), (Beyond::Lost, 1.0)];
         for (beyond, exponent) in expected {
-            let spp = Law::Fitted.spp_if(&better, 0.1, beyond).unwrap();
+            let spp = Law::Fitted.spp(&better, 0.1, beyond).unwrap();
             assert!((spp / (16.0 * libm::pow(missing, 1.0 / exponent)) - 1.0).abs() < 1e-9, "{beyond:?}: {spp}");
             assert!((Law::Fitted.rmse_if(&better, spp, beyond).unwrap() - 0.1).abs() < 1e-12, "{beyond:?}");
         }
         // Only the last octaves count: a first point off the line changes nothing.
         let mut bent = better.clone();
         bent.insert(0, (0.5, 100.0));
-        assert!((Law::Fitted.spp(&bent, 0.01).unwrap() / Law::Fitted.spp(&better, 0.01).unwrap() - 1.0).abs() < 1e-9);
+        assert!(
+            (Law::Fitted.spp(&bent, 0.01, Beyond::Between).unwrap()
+                / Law::Fitted.spp(&better, 0.01, Beyond::Between).unwrap()
+                - 1.0)
+                .abs()
+                < 1e-9
+        );
     }
 
     #[test]
@@ -261,7 +267,8 @@ mod tests {
             let mut pixel = || 0.5 * (uniform(&mut generator) + uniform(&mut generator));
             let images: Vec<Vec<f64>> = (0..8).map(|_| (0..64).map(|_| pixel()).collect()).collect();
             let curves = SeedCurves::of_images(&[2.0], &[images.iter().map(Vec::as_slice).collect()]).unwrap();
-            let spp = curves.positive_estimate(0.95, |curve| Law::Independent.spp(curve, 0.01)).unwrap();
+            let spp =
+                curves.positive_estimate(0.95, |curve| Law::Independent.spp(curve, 0.01, Beyond::Between)).unwrap();
             hits += u32::from(spp.interval.contains(1e4 / 12.0));
             mean += spp.value / (1e4 / 12.0) / 2000.0;
         }
@@ -273,11 +280,11 @@ mod tests {
 
     #[test]
     fn degenerate_input_has_no_answer() {
-        assert_eq!(Law::Fitted.spp(&vec![(1.0, 1.0)], 0.1), None);
-        assert_eq!(Law::Fitted.spp(&vec![(1.0, 1.0), (2.0, 1.0)], 0.1), None);
-        assert_eq!(Law::Independent.spp(&vec![], 0.1), None);
-        assert_eq!(Law::Independent.spp(&vec![(1.0, -1.0)], 0.1), None);
-        assert_eq!(Law::Independent.spp(&power(1.0, -1.0), 0.0), None);
+        assert_eq!(Law::Fitted.spp(&vec![(1.0, 1.0)], 0.1, Beyond::Between), None);
+        assert_eq!(Law::Fitted.spp(&vec![(1.0, 1.0), (2.0, 1.0)], 0.1, Beyond::Between), None);
+        assert_eq!(Law::Independent.spp(&vec![], 0.1, Beyond::Between), None);
+        assert_eq!(Law::Independent.spp(&vec![(1.0, -1.0)], 0.1, Beyond::Between), None);
+        assert_eq!(Law::Independent.spp(&power(1.0, -1.0), 0.0, Beyond::Between), None);
     }
 
     fn of_variance(variance: f64, per_spp: f64) -> Renderer {
