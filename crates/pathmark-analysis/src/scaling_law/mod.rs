@@ -200,7 +200,7 @@ impl fmt::Display for Reason {
             }
             Self::OutOfRange { parameter, low, high } => {
                 let range = if high.is_finite() { format!("outside {low} to {high}") } else { format!("below {low}") };
-                write!(f, "the estimate {} is {range}", parameter)?;
+                write!(f, "the estimate {parameter} is {range}")?;
                 let interval = parameter.estimate.interval;
                 let edge = parameter.estimate.value.clamp(low, high);
                 if interval.contains(edge) {
