@@ -46,7 +46,7 @@ pub struct Report {
     pub claims: Vec<Claim>,
 }
 
-/// A claim as it is written; [`Claim::test`] says how it is judged.
+/// A claim as it is written; `Claim::test` says how it is judged.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct Claim {
