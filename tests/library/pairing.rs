@@ -50,7 +50,7 @@ const EXCEPTIONS: &[(&str, &str, &[&str])] = &[
     (
         "figures/pairs.rs",
         "fitted variances, and geometric means of seconds over the same seeds, whose ratio is the mean of the pairs' ratios",
-        &["variance(first)? / variance(best)?", "seconds_per_spp.value / first.renderer"],
+        &["first.variance()? / best.variance()?", "seconds_per_spp.value / first.renderer"],
     ),
     (
         "figures/rmse_against_time.rs",

@@ -25,9 +25,7 @@ pub mod ranking;
 pub mod scaling_law;
 pub mod slope;
 pub mod speedup;
-pub mod superlinear;
 pub mod tail;
-pub mod versus;
 pub mod z_test;
 
 pub use interval::{Estimate, Interval};

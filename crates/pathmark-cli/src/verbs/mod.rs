@@ -1,19 +1,15 @@
 //! The verbs: one file for each, and files that several share.
 
-mod cases;
 mod claims;
 mod diff;
-mod guards;
 mod image;
 mod inspect;
-mod letters;
 mod list;
 mod merge;
 mod new;
 mod overall_progress;
-mod plan;
+mod prelude;
 mod price;
-mod profile;
 mod rank;
 mod ranks;
 mod renamed;
@@ -29,13 +25,9 @@ mod shell;
 mod simulate;
 mod strict;
 
-use crate::console::Console;
-use crate::error::Result;
-use crate::lab::Lab;
-use clap::Subcommand;
+use prelude::*;
+
 pub(super) use renamed::with_new_names;
-use std::path::PathBuf;
-use std::sync::Arc;
 
 #[derive(Subcommand)]
 pub(super) enum Verb {
@@ -82,7 +74,6 @@ pub(super) enum Verb {
 }
 
 impl Verb {
-    /// Runs it.
     pub(super) fn run(self, lab: &Arc<Lab>, console: &Console) -> Result<()> {
         match self {
             Self::Reproduce(arguments) => reproduce::run(&arguments, lab, console),

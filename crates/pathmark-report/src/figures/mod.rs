@@ -23,12 +23,11 @@ mod granularity;
 mod kernels;
 mod message_costs;
 mod openmp;
-mod options;
+pub(crate) mod options;
 mod outputs;
 mod oversubscription;
 mod pairs;
 mod precision;
-mod prelude;
 mod price_list;
 mod ranks_forecast;
 mod rmse_against_spp;
@@ -132,19 +131,12 @@ pub fn check_figures(definition: &Definition) -> Result<()> {
             .in_file(&definition.file, at)
             .into());
     }
-    check_tables(definition)
-}
-
-/// Refuses tables for figures that the definition does not list, and options that a figure does not have.
-fn check_tables(definition: &Definition) -> Result<()> {
-    for name in definition.figure.keys() {
-        if !definition.figures.contains(name) {
-            let at = place(&definition.text, name);
-            return Err(InputError::new("figure", name, "has parameters, but `figures` does not list it")
-                .allowed(definition.figures.join(", "))
-                .in_file(&definition.file, at)
-                .into());
-        }
+    if let Some(name) = definition.figure.keys().find(|name| !definition.figures.contains(name)) {
+        let at = place(&definition.text, name);
+        return Err(InputError::new("figure", name, "has parameters, but `figures` does not list it")
+            .allowed(definition.figures.join(", "))
+            .in_file(&definition.file, at)
+            .into());
     }
     let mut listed = FIGURES.iter().filter(|entry| definition.figure.contains_key(entry.name));
     listed.try_for_each(|entry| (entry.check)(definition, entry.name))
@@ -162,7 +154,6 @@ pub fn figure_of_serial(definition: &Definition) -> Option<&'static str> {
     figures.into_iter().find(|entry| entry.of_serial).map(|entry| entry.name)
 }
 
-/// The blocks of all figures of the experiment.
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     check_figures(&results.definition)?;
     let mut blocks = Vec::new();

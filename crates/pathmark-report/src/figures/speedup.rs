@@ -1,10 +1,9 @@
 //! Speedup against `serial`, efficiency, and the serial fraction by Karp and Flatt, which explains the missing speedup.
 
-use super::prelude::*;
 use crate::analysis::scaling_law::{Check, Fit, Fitted, Law, fit};
-use crate::analysis::speedup::{Oddity, efficiency, oddity, serial_fraction_within};
-use crate::analysis::superlinear::{Evidence, cause};
+use crate::analysis::speedup::{Evidence, Oddity, cause, efficiency, oddity, serial_fraction_within};
 use crate::measure::TimingConcerns;
+use crate::prelude::*;
 use crate::schedule::is_of_ranks;
 use crate::serial::Serial;
 use crate::words::hollow;
@@ -40,7 +39,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let images: BTreeMap<_, _> = all.iter().map(|(schedule, _)| (*schedule, images(schedule))).collect();
     let peers = gathered(images.iter().map(|(schedule, own)| (own, schedule))).into_iter();
     let usual = peers.max_by_key(|(_, schedules)| schedules.len()).map(|(own, _)| own.clone()).unwrap_or_default();
-    let found = Speedups { results, serial, all, asked, processors: results.processors(), images, usual };
+    let found = Speedups { results, serial, all, asked, processors: results.run.machine.processors, images, usual };
     let mut blocks = found.figures();
     blocks.extend(found.best()?);
     blocks.extend(found.thread_per_row());
@@ -237,9 +236,8 @@ impl Speedups<'_> {
                 return None;
             };
             let serial_share = parameters.first()?.estimate.value;
-            let curve = Curve::Scaling { contention: serial_share, coherence: 0.0 };
             let line = series.iter().position(|series| series.name == name)?;
-            Some(Overlay::fit(format!("{name}: Amdahl, s = {serial_share:.3}"), curve, line))
+            Some(Overlay::fit(format!("{name}: Amdahl, s = {serial_share:.3}"), Curve::Amdahl { serial_share }, line))
         };
         self.serial.lines(self.processors).into_iter().filter_map(overlay).collect()
     }
