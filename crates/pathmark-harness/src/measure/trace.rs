@@ -1,6 +1,7 @@
 //! Traces of runs: which worker ran which job when.
 
 use crate::analysis::balance::{Balance, of_spans};
+use std::collections::BTreeMap;
 
 /// The time of one job, in seconds since the run's start.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -34,6 +35,15 @@ impl Trace {
     /// How `workers` workers spent their time in a run of that makespan; `None` for impossible spans.
     pub fn balance(&self, makespan_s: f64, workers: usize) -> Option<Balance> {
         of_spans(self.jobs.iter().map(|job| (job.worker as usize, job.start_s, job.stop_s)), makespan_s, workers)
+    }
+
+    /// Seconds from the run's start to each worker's first job, over all workers that had one.
+    pub fn starting_s(&self) -> f64 {
+        let mut first: BTreeMap<u32, f64> = BTreeMap::new();
+        for JobSpan { worker, start_s, .. } in &self.jobs {
+            first.entry(*worker).and_modify(|first| *first = first.min(*start_s)).or_insert(*start_s);
+        }
+        first.into_values().sum()
     }
 
     /// The duration of each job, in index order.

@@ -22,6 +22,7 @@ pub mod number;
 pub mod overlay;
 mod paint;
 mod ruler;
+pub mod stacked_bar;
 #[cfg(test)]
 mod schedule_tests;
 pub mod style;
@@ -42,6 +43,7 @@ pub use gantt::{GanttChart, JobBar, Schedule, Shade};
 pub use heat_map::{HeatMap, HeatPanel, Tile};
 pub use line_chart::{LineChart, Point, Series, Spread};
 pub use overlay::{Curve, Overlay, OverlayKind};
+pub use stacked_bar::{Piece, StackPart, StackRow, StackedBars};
 
 /// A figure that can be drawn as vectors and as pixels.
 pub trait Figure {
