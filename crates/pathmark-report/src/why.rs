@@ -10,6 +10,7 @@ use super::rows::paired::{Pairs, medians};
 use super::rows::schedule::Schedule;
 use crate::analysis::parallel_overhead::{Part, Run, decompose};
 use crate::error::Result;
+use crate::plot::number::fixed;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeSet;
 
@@ -176,15 +177,15 @@ impl Explained {
     }
 
     fn in_words(&self) -> String {
-        let Self { name, slots, .. } = self;
         let whole = if self.is_oversubscribed { "processors × time" } else { "workers × time" };
         let work = self.share(Part::Work).as_ref().map_or_else(String::new, percent);
-        let begin =
-            format!("{name}, is not {slots} times as fast as serial: {work} of {whole} is the work of the serial run.");
+        let begin = format!("{}: serial work is {work} of {whole}.", self.name);
         let Some((part, told)) = self.largest_loss() else { return format!("{begin} No loss reaches 1 %.") };
         let remedy = self.remedy.as_ref().map_or_else(String::new, |remedy| format!(" {remedy}"));
-        let reason = words(part)[1];
-        format!("{begin} The largest loss is {} {}: {reason}.{remedy}", self.name_of(part), percent(&told))
+        let is_doubtful = told.interval.is_none_or(|interval| interval.low <= 0.0);
+        let doubt = if is_doubtful { " More repetitions must show whether it is a loss." } else { "" };
+        let (name, share, reason) = (self.name_of(part), percent(&told), words(part)[1]);
+        format!("{begin} The largest loss is {name} {share}: {reason}.{doubt}{remedy}")
     }
 }
 
@@ -204,9 +205,9 @@ fn percent(told: &Estimated) -> String {
     let Estimated { value, interval, .. } = told.times(100.0);
     let interval = interval.map_or_else(
         || "no interval".to_string(),
-        |own| format!("{:.1} to {:.1}, {:.1} % confidence", own.low, own.high, 100.0 * own.level),
+        |own| format!("{} to {}, {:.1} % confidence", fixed(own.low, 1), fixed(own.high, 1), 100.0 * own.level),
     );
-    format!("{value:.1} % ({interval})")
+    format!("{} % ({interval})", fixed(value, 1))
 }
 
 /// The name of a part, and the event behind it.
@@ -347,6 +348,19 @@ mod tests {
             found[0].sentence
         );
         assert!(found[1].remedy.is_none() && found[1].sentence.ends_with("No loss reaches 1 %."));
+    }
+
+    /// Jobs took longer in four repetitions and less time in two.
+    #[test]
+    fn a_loss_that_may_be_none_is_told_as_doubtful() {
+        let mut rows = rows("shared-counter", [2.5, 5.0, 0.0, 0.0, 0.0]);
+        for row in rows.iter_mut().filter(|row| row.threads == 2 && row.repetition < 2) {
+            row.busy_sum_s = Some(3.0);
+        }
+        let said = "work inflation 20.0 % (−20.0 to 20.0, 96.9 % confidence): the same jobs took longer than in the \
+                    serial run. More repetitions must show whether it is a loss.";
+        let found = explained(rows);
+        assert!(found[0].sentence.contains(said), "{}", found[0].sentence);
     }
 
     /// Rows of schema 11 do not tell when first jobs began.
