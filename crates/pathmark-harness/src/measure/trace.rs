@@ -51,3 +51,16 @@ impl Trace {
         self.jobs.iter().map(JobSpan::duration_s).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Worker 1 begins half a second late, and worker 0 has a second job, in any order of the jobs.
+    #[test]
+    fn each_worker_starts_with_its_first_job() {
+        let span = |(worker, start_s): (u32, f64)| JobSpan { worker, start_s, stop_s: start_s + 0.25 };
+        let trace = Trace { jobs: [(0, 1.0), (1, 0.5), (0, 0.125), (1, 0.75)].map(span).to_vec() };
+        assert_eq!((trace.starting_s(), Trace::default().starting_s()), (0.625, 0.0));
+    }
+}
