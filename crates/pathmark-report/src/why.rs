@@ -329,9 +329,12 @@ mod tests {
                 *time = time.map(|time| factor * time);
             }
         }
-        let tail = explained(rows)[0].share(Part::Tail).unwrap();
-        let interval = tail.interval.unwrap();
-        assert_eq!((tail.value, interval.low, interval.high, tail.count), (0.2, 0.2, 0.2, Some(6)));
+        let found = explained(rows);
+        for (part, share) in [(Part::Work, 0.8), (Part::Tail, 0.2)] {
+            let told = found[0].share(part).unwrap();
+            let interval = told.interval.unwrap();
+            assert_eq!((told.value, interval.low, interval.high, told.count), (share, share, share, Some(6)));
+        }
     }
 
     #[test]
