@@ -412,6 +412,18 @@ mod tests {
         assert!(text.contains("static-blocks, 2 threads, tail: 20 (20 to 20)"), "{text}");
     }
 
+    /// `static-blocks` loses twice as much, but over half of the repetitions.
+    #[test]
+    fn the_title_ranks_no_loss_over_fewer_repetitions() {
+        let mut rows = rows("static-blocks", [2.5, 4.0, 0.0, 0.0, 0.0]);
+        rows.retain(|row| row.threads == 1 || row.repetition < 3);
+        let other = super::tests::rows("shared-counter", [2.5, 4.5, 0.0, 0.0, 0.0]);
+        rows.extend(other.into_iter().filter(|row| row.threads == 2));
+        let text = words(&blocks(&results(&["losses"], "", rows).unwrap()).unwrap());
+        assert!(text.contains("Why not 2 times? shared-counter, 2 threads, loses 10 %"), "{text}");
+        assert!(text.contains("static-blocks, 2 threads, fewer repetitions"), "{text}");
+    }
+
     #[test]
     fn rows_without_a_loss_are_a_notice() {
         let none = results(&["losses"], "", vec![row()]).unwrap();

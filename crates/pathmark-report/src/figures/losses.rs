@@ -12,8 +12,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let reason = "No schedule of several workers has a serial run beside it, so its losses are unknown.";
         return Ok(vec![Block::notice(reason)]);
     }
-    let worst = found.iter().filter_map(|own| Some((own, own.largest_loss()?)));
-    let worst = worst.max_by(|a, b| a.1.1.value.total_cmp(&b.1.1.value));
+    // A loss over fewer repetitions than the others have is not ranked.
+    let losses = found.iter().filter_map(|own| Some((own, own.largest_loss()?)));
+    let losses = losses.filter(|(_, (_, told))| !told.is_partial);
+    let worst = losses.max_by(|a, b| a.1.1.value.total_cmp(&b.1.1.value));
     let mut blocks = vec![Block::figure("losses", chart(results, &found, worst))];
     blocks.extend(worst.map(|(own, _)| Block::finding(&own.sentence)));
     let mut table = Block::table("losses", "Why not N times? Shares of workers × time in percent", &found)
@@ -46,7 +48,7 @@ fn chart(results: &Results, found: &[Explained], worst: Option<(&Explained, (Par
                 own.name_of(part)
             )
         }
-        None => "Why not N times? No loss reaches 1 %".to_string(),
+        None => "Why not N times?".to_string(),
     };
     let parts: Vec<Part> = parts(found).collect();
     let part = |part: &Part| StackPart { name: name_of(found, *part).to_string(), colour: colour(*part) };
