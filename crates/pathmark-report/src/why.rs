@@ -370,7 +370,9 @@ mod tests {
     #[test]
     fn older_rows_have_one_part_before_and_between_jobs() {
         let mut rows = rows("shared-counter", [2.5, 4.0, 1.0, 0.0, 0.0]);
-        rows.iter_mut().for_each(|row| row.idle_before_first_job_s = None);
+        for row in &mut rows {
+            row.idle_before_first_job_s = None;
+        }
         let found = explained(rows);
         assert!(found[0].share(Part::Starting).is_none());
         assert!(

@@ -22,9 +22,9 @@ pub mod number;
 pub mod overlay;
 mod paint;
 mod ruler;
-pub mod stacked_bar;
 #[cfg(test)]
 mod schedule_tests;
+pub mod stacked_bar;
 pub mod style;
 #[cfg(test)]
 mod tests;

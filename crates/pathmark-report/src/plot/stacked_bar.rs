@@ -129,24 +129,21 @@ impl Figure for StackedBars {
             names.iter().map(|name| ROW.max(name.len() as f64 * SMALL_SIZE * LEADING + 6.0)).collect();
         let bottom = top + heights.iter().sum::<f64>().max(legend.1).max(2.0 * ROW);
         let area = [left, top, right, bottom];
-        match self.range() {
-            Some(range) => {
-                ruler::below(&mut drawing, &range.ticks(&self.axis.ticks, 9), area);
-                let mut y = top;
-                for ((row, name), height) in self.rows.iter().zip(&names).zip(&heights) {
-                    let middle = y + 0.5 * height;
-                    for (i, line) in name.iter().enumerate() {
-                        let offset = (i as f64 - 0.5 * (name.len() as f64 - 1.0)) * SMALL_SIZE * LEADING;
-                        drawing.text((left - GAP, middle + offset), line, SMALL_SIZE, INK, Align::Right);
-                    }
-                    self.draw_row(&mut drawing, row, &range, (left, right), middle);
-                    y += height;
+        if let Some(range) = self.range() {
+            ruler::below(&mut drawing, &range.ticks(&self.axis.ticks, 9), area);
+            let mut y = top;
+            for ((row, name), height) in self.rows.iter().zip(&names).zip(&heights) {
+                let middle = y + 0.5 * height;
+                for (i, line) in name.iter().enumerate() {
+                    let offset = (i as f64 - 0.5 * (name.len() as f64 - 1.0)) * SMALL_SIZE * LEADING;
+                    drawing.text((left - GAP, middle + offset), line, SMALL_SIZE, INK, Align::Right);
                 }
+                self.draw_row(&mut drawing, row, &range, (left, right), middle);
+                y += height;
             }
-            None => {
-                let at = (0.5 * (left + right), 0.5 * (top + bottom));
-                drawing.text(at, "no data", TEXT_SIZE, MUTED, Align::Centre);
-            }
+        } else {
+            let at = (0.5 * (left + right), 0.5 * (top + bottom));
+            drawing.text(at, "no data", TEXT_SIZE, MUTED, Align::Centre);
         }
         drawing.outline(area, INK);
         legend::draw(&mut drawing, &entries, (right + 20.0, top));
