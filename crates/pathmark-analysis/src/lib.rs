@@ -16,6 +16,7 @@ pub mod jackknife;
 pub mod mean;
 pub mod metg;
 pub mod mse;
+pub mod parallel_overhead;
 pub mod price;
 pub mod quantile;
 pub mod randomness;

@@ -11,12 +11,14 @@ mod pairing_tests;
 pub mod plot;
 mod prelude;
 pub mod rank_forecasts;
+mod remedy;
 mod results;
 mod rows;
 mod serial;
 #[cfg(test)]
 mod tests;
 pub mod timeline;
+pub mod why;
 mod words;
 
 pub use figures::{FIGURES, FigureEntry, check_figures, figure_of_serial};
@@ -31,7 +33,7 @@ use crate::lab::Lab;
 use page::{Section, benches, block, guards, table};
 use pathmark_harness::{
     analysis, atomic_file, cases_file, cluster, csv_file, digest, error, experiment, files, film_file, guard_prices,
-    image_io, input, kernel, lab, measure, metric, scene, shell, simulate,
+    image_io, input, kernel, lab, measure, metric, scene, shell, simulate, strategy,
 };
 use rows::{naming, paired, schedule};
 use std::path::{Path, PathBuf};

@@ -24,6 +24,7 @@ mod shard;
 mod shell;
 mod simulate;
 mod strict;
+mod why;
 
 use prelude::*;
 
@@ -44,6 +45,8 @@ pub(super) enum Verb {
     Image(image::Image),
     /// Rank the schedules of an experiment: which can be told apart?
     Rank(rank::Arguments),
+    /// Explain why each schedule is not as many times as fast as it has workers, and what to try.
+    Why(why::Arguments),
     /// Compare two measurements of an experiment: which cells got slower?
     Diff(diff::Arguments),
     /// Predict the samples and seconds that an accuracy costs; --verify checks the prediction by rendering.
@@ -81,6 +84,7 @@ impl Verb {
             Self::Merge(arguments) => merge::run(&arguments, lab, console),
             Self::Run(arguments) => run::run(&arguments, lab, console),
             Self::Rank(arguments) => rank::run(&arguments, lab, console),
+            Self::Why(arguments) => why::run(&arguments, lab, console),
             Self::Diff(arguments) => diff::run(&arguments, console),
             Self::Price(arguments) => price::run(&arguments, lab, console),
             Self::Claims(arguments) => claims::run(&arguments, lab),

@@ -87,6 +87,9 @@ settings_list!(columns {
         /// Seconds that workers spent before their first job and between jobs, over all workers.
         #[since(2)]
         pub idle_between_jobs_s: Option<f64>,
+        /// Seconds from handing over the jobs to each worker's first job, over all workers; part of `idle_between_jobs_s`.
+        #[since(12)]
+        pub idle_before_first_job_s: Option<f64>,
         /// Seconds from each worker's last job to the end of the run, over all workers. Busy time, gaps and tails add up to workers x makespan.
         #[since(2)]
         pub idle_tail_s: Option<f64>,
@@ -308,6 +311,7 @@ impl Record {
             record.busy_sum_s = Some(balance.busy_s());
             record.busy_max_s = balance.workers.iter().map(|share| share.busy_s).reduce(f64::max);
             record.idle_between_jobs_s = Some(balance.gap_s());
+            record.idle_before_first_job_s = Some(outcome.trace.starting_s());
             record.idle_tail_s = Some(balance.tail_s());
         }
         record.job_min_s = durations.iter().copied().reduce(f64::min);

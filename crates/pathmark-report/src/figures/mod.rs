@@ -21,6 +21,7 @@ mod gallery;
 mod generators;
 mod granularity;
 mod kernels;
+mod losses;
 mod message_costs;
 mod openmp;
 pub(crate) mod options;
@@ -113,6 +114,7 @@ pub const FIGURES: &[FigureEntry] = entries! {
     kernels, "kernels", kernels::Options, "samples per second of lanes over those of the scalar kernel, by instruction set and precision";
     precision, "precision", NoOptions, "time, error, light, escapes and invalid samples of single precision beside double";
     acceleration, "acceleration", Yardstick, "time per ray against primitives and gain against spp, by accelerator";
+    losses, "losses", NoOptions, needs serial, "why a schedule is not as many times as fast as it has workers: work inflation, idle time, merge";
     schedules, "schedules", NoOptions, "time, load imbalance and context switches of each schedule";
 };
 

@@ -21,6 +21,7 @@ pub mod overlay;
 mod paint;
 #[cfg(test)]
 mod schedule_tests;
+pub mod stacked_bar;
 pub mod style;
 #[cfg(test)]
 mod tests;
@@ -38,6 +39,7 @@ pub use gantt::{GanttChart, JobBar, Schedule};
 pub use heat_map::{HeatMap, Tile};
 pub use line_chart::{LineChart, Point, Series, Spread};
 pub use overlay::{Curve, Overlay};
+pub use stacked_bar::{Piece, StackPart, StackRow, StackedBars};
 
 /// A figure that can be drawn as vectors and as pixels.
 pub trait Figure {
