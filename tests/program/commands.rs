@@ -49,7 +49,7 @@ fn the_commands_of_the_readme_run() {
     assert!(commands > 10, "{commands} commands");
 }
 
-/// As printed, except that experiments run in a small size and the simulation skips its check of this machine.
+/// As printed, except that images are small and the simulation skips its check of this machine.
 #[test]
 fn every_command_of_the_tutorial_runs() {
     let text = include_str!("../../docs/tutorial.md");
@@ -63,10 +63,12 @@ fn every_command_of_the_tutorial_runs() {
             }
             "sh" => {
                 for line in block.lines() {
-                    let mut words: Vec<&str> = line.split_whitespace().collect();
+                    let small = line.replace("160x120", "40x30").replace("64x48", "16x12");
+                    let mut words: Vec<&str> = small.split_whitespace().collect();
                     assert_eq!(words[0], "pathmark", "{line}");
                     match words[1] {
-                        "run" => words.extend(["--set", "size=64x48"]),
+                        "run" => words.extend(["--set", "size=16x12"]),
+                        "render" if !small.contains("--size") => words.extend(["--size", "64x48"]),
                         "simulate" => words.push("--no-check"),
                         _ => (),
                     }
