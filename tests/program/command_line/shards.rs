@@ -107,7 +107,7 @@ const FEWEST_KILLS: u64 = 5;
 fn a_killed_part_goes_on_to_the_same_image() {
     for by in ["samples", "tiles"] {
         let folder = tempfile::tempdir().unwrap();
-        let long = ["--spp", "1200", "--shard-by", by];
+        let long = ["--spp", "480", "--shard-by", by];
         part(folder.path(), "1/2", &long);
         part(folder.path(), "2/2", &long);
         let merged = ["merge", "part-1-of-2.film", "part-2-of-2.film", "-o", "whole.pfm", "--json"];
