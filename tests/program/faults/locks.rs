@@ -138,18 +138,23 @@ fn reproduce_shares_its_folder_with_nobody() {
 #[test]
 fn a_lock_is_taken_by_one_at_a_time_or_shared() {
     let _watchdog = Watchdog::new(Duration::from_mins(1));
+    // At once, since each refusal comes after a second.
+    std::thread::scope(|scope| {
+        for (held, wanted) in
+            [(Sharing::Alone, Sharing::Alone), (Sharing::Alone, Sharing::Shared), (Sharing::Shared, Sharing::Alone)]
+        {
+            scope.spawn(move || {
+                let folder = tempfile::tempdir().unwrap();
+                let _first = Lock::of_folder(folder.path(), "field", held).unwrap();
+                let error = Lock::of_folder(folder.path(), "field", wanted).unwrap_err();
+                assert_eq!(error.exit_code(), 2);
+                let said = format!("field = {}: is being written by another process", folder.path().display());
+                assert!(error.to_string().starts_with(&said), "{error}");
+            });
+        }
+    });
     let folder = tempfile::tempdir().unwrap();
     let take = |sharing| Lock::of_folder(folder.path(), "field", sharing);
-    for (held, wanted) in
-        [(Sharing::Alone, Sharing::Alone), (Sharing::Alone, Sharing::Shared), (Sharing::Shared, Sharing::Alone)]
-    {
-        let first = take(held).unwrap();
-        let error = take(wanted).unwrap_err();
-        assert_eq!(error.exit_code(), 2);
-        let said = format!("field = {}: is being written by another process", folder.path().display());
-        assert!(error.to_string().starts_with(&said), "{error}");
-        drop(first);
-    }
     // Holders of a shared lock release it in any order; the last one removes the file.
     let [first, second] = [(); 2].map(|()| take(Sharing::Shared).unwrap());
     drop(first);
@@ -162,7 +167,7 @@ fn a_lock_is_taken_by_one_at_a_time_or_shared() {
     std::thread::scope(|scope| {
         for _ in 0..4 {
             scope.spawn(|| {
-                for _ in 0..20 {
+                for _ in 0..8 {
                     let Ok(lock) = take(Sharing::Alone) else { continue };
                     assert_eq!(inside.fetch_add(1, std::sync::atomic::Ordering::SeqCst), 0);
                     std::thread::sleep(Duration::from_millis(1));
