@@ -261,7 +261,8 @@ fn two_builds_are_measured_in_turns() {
 fn instructions_are_counted_and_compared() {
     let folder = tempfile::tempdir().unwrap();
     write_tiny(folder.path(), TINY);
-    let count = ["run", "tiny.toml", "--repetitions", "1", "--filter", "threads=1", "--count-instructions", "--out"];
+    let count =
+        ["run", "tiny.toml", "--repetitions", "1", "--filter", "strategy=serial", "--count-instructions", "--out"];
     if Command::new("valgrind").arg("--version").output().is_err() {
         println!("no valgrind: instructions are not counted");
         let refused = run(folder.path(), &[&count[..], &["none"]].concat(), 3);
