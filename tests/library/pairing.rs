@@ -13,11 +13,6 @@ const PAIRED: &str = "rows/paired.rs";
 /// Divisions of other values: the file, the reason, and each division as it is written.
 const EXCEPTIONS: &[(&str, &str, &[&str])] = &[
     (
-        "page/benches.rs",
-        "criterion measures each case in a row of its own, without repetitions; the ends of intervals are paired crosswise",
-        &["other.median_s / self.median_s", "other.low_s / self.high_s", "other.high_s / self.low_s"],
-    ),
-    (
         "claims/judge.rs",
         "conditions of a claim: samples or pixels asked for and run",
         &["own.parse::<f64>().ok()? / wanted"],

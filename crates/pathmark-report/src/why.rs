@@ -54,7 +54,7 @@ pub(super) type Measured<'a> = (&'a Cell<'a>, &'a [(Part, Estimated)]);
 /// image, the one with the least serial work first.
 pub fn explain(results: &Results) -> Result<Vec<Explained>> {
     let cells = cells(results)?;
-    let processors = results.processors();
+    let processors = results.run.machine.processors;
     let mut parts: Vec<Vec<(Part, Estimated)>> = vec![Vec::new(); cells.len()];
     for part in Part::ALL {
         let shares = cells.iter().enumerate().map(|(index, cell)| {
@@ -107,9 +107,9 @@ fn cells(results: &Results) -> Result<Vec<Cell<'_>>> {
     let groups = groups.filter(|((.., schedule), _)| !schedule.is_serial() && schedule.key.threads > 1);
     let cell = |((series, ..), rows): ((String, u32, &Schedule), Vec<_>)| {
         let first = *rows.first()?;
-        let on_pieces = serial.on_pieces(rows.iter().copied());
+        let on_pieces = serial.on_pieces.pairs(rows.iter().copied());
         let has_pairs = on_pieces.iter().next().is_some();
-        Some(Cell { series, first, pairs: if has_pairs { on_pieces } else { serial.with_fastest(rows) } })
+        Some(Cell { series, first, pairs: if has_pairs { on_pieces } else { serial.fastest.pairs(rows) } })
     };
     Ok(groups.filter_map(cell).collect())
 }

@@ -1,9 +1,9 @@
 //! Why not N times? The uses of the workers' time as stacked bars, and the largest loss of each schedule in words.
 
-use super::prelude::*;
 use crate::analysis::parallel_overhead::Part;
 use crate::plot::style::{Colour, SERIES};
 use crate::plot::{Piece, StackPart, StackRow, StackedBars};
+use crate::prelude::*;
 use crate::why::{Explained, explain};
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {

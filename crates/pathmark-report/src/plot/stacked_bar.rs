@@ -5,11 +5,10 @@
 use super::Figure;
 use super::axis::{Axis, Range};
 use super::drawing::{Align, Drawing, Note, PartKind};
-use super::frame::WIDTH;
+use super::font;
+use super::frame::{self, GAP, TICK, WIDTH};
 use super::legend::{self, LegendEntry, Sample};
-use super::ruler::{self, GAP, TICK};
 use super::style::{Colour, INK, LEADING, MARGIN, MUTED, PAPER, SMALL_SIZE, TEXT_SIZE};
-use super::{font, heading};
 
 /// Largest width of a row's name; longer ones are broken.
 const WIDEST: f64 = 260.0;
@@ -83,7 +82,7 @@ impl StackedBars {
         let has = |part: usize| self.rows.iter().any(|row| row.placed().any(|(own, ..)| own == part));
         let drawn = self.parts.iter().enumerate().filter(|(part, _)| has(*part));
         let sample = |colour| Sample::Line { colour, dash: &[], width: 0.6 * BAR };
-        drawn.map(|(_, part)| LegendEntry::new(sample(part.colour), &part.name)).collect()
+        drawn.map(|(_, part)| LegendEntry::new(sample(part.colour), &part.name, &part.name)).collect()
     }
 
     /// The range from 0 to the longest bar; `None` if no bar has a length.
@@ -118,7 +117,7 @@ impl StackedBars {
 impl Figure for StackedBars {
     fn drawing(&self) -> Drawing {
         let mut drawing = Drawing::new(&self.title, WIDTH, 0.0);
-        let top = heading::above(&mut drawing, &self.title, &self.subtitle) + 12.0;
+        let top = frame::words_above(&mut drawing, &self.title, &self.subtitle) + 12.0;
         let names: Vec<Vec<String>> = self.rows.iter().map(|row| font::wrap(&row.name, SMALL_SIZE, WIDEST)).collect();
         let widest = names.iter().flatten().map(|line| font::width(line, SMALL_SIZE)).fold(0.0, f64::max);
         let entries = self.entries();
@@ -130,7 +129,7 @@ impl Figure for StackedBars {
         let bottom = top + heights.iter().sum::<f64>().max(legend.1).max(2.0 * ROW);
         let area = [left, top, right, bottom];
         if let Some(range) = self.range() {
-            ruler::below(&mut drawing, &range.ticks(&self.axis.ticks, 9), area);
+            frame::ruler(&mut drawing, &range.ticks(self.axis.ticks.as_deref(), 9), area);
             let mut y = top;
             for ((row, name), height) in self.rows.iter().zip(&names).zip(&heights) {
                 let middle = y + 0.5 * height;
@@ -149,7 +148,7 @@ impl Figure for StackedBars {
         legend::draw(&mut drawing, &entries, (right + 20.0, top));
         let y = bottom + TICK + GAP + SMALL_SIZE + 14.0;
         drawing.text((0.5 * (left + right), y), &self.axis.label, TEXT_SIZE, INK, Align::Centre);
-        let end = heading::below(&mut drawing, &self.caption, y + TEXT_SIZE + 14.0);
+        let end = frame::words_below(&mut drawing, &self.caption, y + TEXT_SIZE + 14.0);
         drawing.height = (end + 8.0).ceil();
         drawing
     }
