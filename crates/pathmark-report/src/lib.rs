@@ -27,7 +27,7 @@ pub use results::Results;
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
 use crate::lab::Lab;
-use page::{Section, benches, block, guards, table};
+use page::{Section, benches, block, doctor, guards, table};
 use pathmark_harness::{
     analysis, atomic_file, cases_file, cluster, csv_file, digest, error, experiment, files, film_file, guard_prices,
     image_io, input, kernel, lab, measure, metric, scene, shell, simulate,
@@ -59,6 +59,9 @@ pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
     }
     sections.extend(guards::section(out)?);
     sections.extend(benches::section(out)?);
+    if !sections.is_empty() {
+        sections.extend(doctor::section(out)?);
+    }
     if let Some(section) = claims::section(lab, out)? {
         sections.insert(0, section);
     }

@@ -3,14 +3,16 @@
 use super::overall_progress::OverallProgress;
 use super::plan::Plans;
 use super::run::{check_failures, note_doubts, rows, tell_left_out};
-use super::{cases, guards, profile, strict::Strict};
+use super::{cases, doctor, guards, profile, strict::Strict};
 use crate::cases_file;
 use crate::check::{self, Case, Effort};
 use crate::command_line;
 use crate::console::Console;
 use crate::console::output::{lock_folder, print};
 use crate::error::{Error, Result};
-use crate::experiment::{Definition, Options, Profile, Progress, RecordsFile, Summary, Sweep, Timeout};
+use crate::experiment::{
+    DOCTOR, Definition, Examination, Options, Profile, Progress, RecordsFile, Summary, Sweep, Timeout,
+};
 use crate::files::Files;
 use crate::guard_prices::FOLDER;
 use crate::lab::Lab;
@@ -71,6 +73,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
         return Plans::new(lab, &sweeps)?.print(left_out);
     }
     report::claim("out", &arguments.out, &mut files)?;
+    files.renews("out", &arguments.out.join(DOCTOR), |path| Examination::read(path).is_ok())?;
     let _lock = lock_folder(&arguments.out, Sharing::Alone)?;
     if !arguments.resume {
         put_aside(&arguments.out, lab, console)?;
@@ -78,6 +81,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     if !guards::are_in(&arguments.out) {
         guards::claim(&arguments.out, &mut files)?;
     }
+    doctor::examine_into(&arguments.out, console)?;
     let Total { rows, failed, timed_out, invalid, left_out, doubts } = run_all(&sweeps, profile, lab, console)?;
     // The cases take longer than a sixth of all quick experiments, so the quick profile leaves them to `selftest --out`.
     if profile != Profile::Quick && !cases_file::is_in(&arguments.out) {
@@ -155,7 +159,9 @@ fn put_aside(out: &Path, lab: &Lab, console: &Console) -> Result<()> {
     let earlier = out.join("earlier").join(stamp);
     // Verdicts are of the rows beside them.
     let verdicts = Some(claims::MARKDOWN).filter(|name| claims::is_markdown(&out.join(name)));
-    for name in names.into_iter().chain([FOLDER, cases_file::FOLDER, claims::FOLDER]).chain(verdicts) {
+    let examination = Some(DOCTOR).filter(|name| Examination::read(&out.join(name)).is_ok());
+    let others = [FOLDER, cases_file::FOLDER, claims::FOLDER].into_iter().chain(verdicts).chain(examination);
+    for name in names.into_iter().chain(others) {
         let folder = out.join(name);
         if folder.exists() {
             std::fs::create_dir_all(&earlier).map_err(|e| Error::system("creating", &earlier, e))?;

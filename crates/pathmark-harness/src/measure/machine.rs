@@ -2,6 +2,7 @@
 
 use super::processor::{instruction_sets, model_numbers};
 use super::stamp::Stamp;
+use crate::machine::Layout;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
@@ -42,6 +43,9 @@ pub struct Machine {
     pub commit: String,
     /// Whether the sources had uncommitted changes.
     pub dirty: bool,
+    /// Cores, sockets, memory nodes and caches, and the processors that this process may use. Empty in older files.
+    #[serde(default)]
+    pub layout: Layout,
 }
 
 fn read(path: &str) -> Option<String> {
@@ -103,6 +107,7 @@ impl Machine {
             profile: built_with(env!("PATHMARK_PROFILE")),
             commit: built_with(Stamp::of_program().commit),
             dirty: Stamp::of_program().is_dirty,
+            layout: Layout::here(),
         }
     }
 
@@ -171,8 +176,10 @@ mod tests {
         let mut table = toml::Table::try_from(Machine::look()).unwrap();
         table.remove("cpu_model");
         table.remove("cpu_features");
+        table.remove("layout");
         let old: Machine = table.try_into().unwrap();
         assert_eq!((old.cpu_model.as_str(), old.cpu_features.as_str()), ("", ""));
+        assert_eq!(old.layout, Layout::default());
         // A fact that an old file lacks is no difference.
         assert_eq!((old.difference(&Machine::look()), Machine::look().difference(&old)), (None, None));
     }

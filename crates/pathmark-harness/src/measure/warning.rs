@@ -178,7 +178,7 @@ pub const WARNINGS: &[WarningEntry] = &[
     WarningEntry {
         name: "unmeasured",
         about: "The system does not report the facts in brackets: their columns are empty, and no row is in doubt because of them.",
-        advice: "Measure on Linux if you need them; without the load of other programs, make sure that there is none.",
+        advice: "Measure on Linux if you need them; without the load of other programs, make sure that there is none. Counters need a kernel that grants them (`kernel.perf_event_paranoid` of 2 or less), and most virtual machines have none.",
     },
     WarningEntry {
         name: "debug-build",

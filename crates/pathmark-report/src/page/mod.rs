@@ -4,6 +4,7 @@ mod again;
 pub(crate) mod benches;
 pub(crate) mod block;
 mod columns;
+pub(crate) mod doctor;
 pub(crate) mod guards;
 pub(crate) mod table;
 
