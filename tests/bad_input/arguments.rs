@@ -23,7 +23,7 @@ const WRONG: &[(&[&str], &[&str])] = &[
     #[cfg(target_os = "linux")]
     (&["--pin", "60000"], &["pin", "60000", "may not run on processor 60000"]),
     #[cfg(target_os = "linux")]
-    (&["--pin", "compact", "--threads", "9999"], &["pin", "compact", "9999 workers", "at most"]),
+    (&["--pin", "compact", "--threads", "9999"], &["pin", "compact", "of 9999 workers", "up to"]),
     (&["--counters=perhaps"], &["--counters", "perhaps"]),
     (&["--decomposition", "hexagons"], &["decomposition", "hexagons", "tiles:32x32"]),
     (&["--decomposition", "tiles:0x8"], &["decomposition", "tiles:0x8", "at least 1"]),

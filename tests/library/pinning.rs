@@ -91,7 +91,7 @@ fn impossible_pins_are_refused_before_anything_runs() {
     };
     let first = allowed_cpus()[0];
     assert!(refused("60000", "serial", "rows").contains("may not run on processor 60000"));
-    // A thread for each of 384 rows.
+    // A thread for each of 192 rows.
     let error = refused(&first.to_string(), "thread-per-job", "rows");
-    assert!(error.contains("provides 1 processors, but the strategy has 384 workers"), "{error}");
+    assert!(error.contains("only 1 of 192 workers"), "{error}");
 }

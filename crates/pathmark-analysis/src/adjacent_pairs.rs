@@ -305,7 +305,7 @@ mod tests {
         assert_eq!(spread.plan(0.0, 0.95, cheap), None);
     }
 
-    /// What a time allows is what a plan for that precision takes, up to the rounding of pairs.
+    /// A plan for a narrower interval takes longer.
     #[test]
     fn the_narrowest_interval_of_a_time_is_that_of_the_cheapest_plan() {
         let spread = Spread { within: 0.05, between: 0.002 };

@@ -99,8 +99,8 @@ impl PinPolicy {
             return Err(InputError::new("pin", self.to_string(), problem).allowed("none").into());
         }
         if workers > order.len() {
-            let problem = format!("provides {} processors, but the strategy has {workers} workers", order.len());
-            let allowed = format!("at most {} workers, or another policy", order.len());
+            let problem = format!("has a processor for only {} of {workers} workers", order.len());
+            let allowed = format!("up to {} workers, or another policy", order.len());
             return Err(InputError::new("pin", self.to_string(), problem).allowed(allowed).into());
         }
         Ok(order[..workers].to_vec())
@@ -177,10 +177,8 @@ mod tests {
     fn impossible_requests_are_refused() {
         let folder = two_sockets();
         let topology = Topology::read(folder.path());
-        assert!(
-            refused("one-per-core", &topology, 5).contains("provides 4 processors, but the strategy has 5 workers")
-        );
-        assert!(refused("0-1", &topology, 3).contains("at most 2 workers"));
+        assert!(refused("one-per-core", &topology, 5).contains("only 4 of 5 workers"));
+        assert!(refused("0-1", &topology, 3).contains("up to 2 workers"));
         assert!(refused("0,9", &topology, 1).contains("processor 9"));
         assert!(refused("0", &topology.clone().within(&[1, 2]), 1).contains("allowed: 1-2"));
         for wrong in ["", "far", "1-", "3-1"] {
@@ -189,7 +187,7 @@ mod tests {
         }
         assert!(refused("compact", &Topology::default(), 1).contains("does not list its processors"));
         let folder = hybrid();
-        assert!(refused("performance", &Topology::read(folder.path()), 3).contains("provides 2 processors"));
+        assert!(refused("performance", &Topology::read(folder.path()), 3).contains("only 2 of 3 workers"));
     }
 
     #[test]

@@ -37,3 +37,32 @@ pub(crate) fn section(out: &Path) -> Result<Option<Section>> {
         ..Section::default()
     }))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_examination_is_a_section() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(section(folder.path()).unwrap().is_none());
+        let plan = r#"{"processes":9,"pairs":40,"half_width":0.013,"seconds":590.0}"#;
+        let noise = format!(
+            r#"{{"processes":3,"pairs":30,"pair_s":0.05,"ratio":1.0,"low":0.9,"high":1.1,"in_ten_minutes":{plan}}}"#
+        );
+        let facts =
+            r#"[{"name":"governor","value":"powersave","advice":"choose another"},{"name":"quota","value":"none"}]"#;
+        let write = |noise: &str| {
+            let text = format!(r#"{{"started_utc":"","facts":{facts},"noise":{noise}}}"#);
+            std::fs::write(folder.path().join(DOCTOR), text).unwrap();
+            section(folder.path()).unwrap().unwrap().blocks
+        };
+        let blocks = write(&noise);
+        let finding = blocks[0].as_finding().unwrap();
+        assert!(finding.starts_with("differences below 1.30 % cannot be seen in 10 minutes here"), "{finding}");
+        assert!(matches!(&blocks[1], Block::Table { table, .. } if table.len() == 2));
+        assert!(write("null")[0].as_finding().is_none());
+        std::fs::write(folder.path().join(DOCTOR), "[]").unwrap();
+        assert_eq!(section(folder.path()).err().unwrap().exit_code(), 2);
+    }
+}
