@@ -11,9 +11,11 @@ use std::sync::{Arc, Mutex};
 use std::thread::{self, ThreadId};
 use std::time::Duration;
 
-/// The processors on which each job's thread may run.
+/// The threads of jobs, and the processors on which they may run.
+type Seen = Vec<(ThreadId, Vec<usize>)>;
+
 #[derive(Clone, Default)]
-struct Affinity(Arc<Mutex<Vec<(ThreadId, Vec<usize>)>>>);
+struct Affinity(Arc<Mutex<Seen>>);
 
 impl Workload for Affinity {
     fn run(&self, _: &Item) -> [f64; 3] {

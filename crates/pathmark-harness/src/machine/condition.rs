@@ -157,8 +157,8 @@ mod tests {
         facts.map(|fact| (fact.name, fact.value, !fact.advice.is_empty())).collect()
     }
 
-    fn table(rows: [(&str, &str, bool); 8]) -> Vec<(String, String, bool)> {
-        rows.map(|(name, value, is_advised)| (name.to_string(), value.to_string(), is_advised)).to_vec()
+    fn table(rows: &[(&str, &str, bool)]) -> Vec<(String, String, bool)> {
+        rows.iter().map(|(name, value, is_advised)| (name.to_string(), value.to_string(), *is_advised)).collect()
     }
 
     #[test]
@@ -177,7 +177,7 @@ mod tests {
                 ("sys/class/thermal/thermal_zone1/temp", "67500\n"),
             ],
         );
-        let expected = table([
+        let expected = table(&[
             ("governor", "performance, powersave", true),
             ("turbo", "on", true),
             ("threads of cores (SMT)", "on", true),
@@ -202,7 +202,7 @@ mod tests {
                 ("proc/cpuinfo", "flags\t\t: fpu sse\n"),
             ],
         );
-        let expected = table([
+        let expected = table(&[
             ("governor", "performance", false),
             ("turbo", "off", false),
             ("threads of cores (SMT)", "off", false),
