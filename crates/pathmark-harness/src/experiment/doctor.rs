@@ -155,7 +155,7 @@ impl Noise {
     pub fn finding(&self) -> String {
         let PowerPlan { processes, pairs, half_width, .. } = self.in_ten_minutes;
         format!(
-            "differences below {:.2} % cannot be seen in 10 minutes here ({processes} processes of {pairs} pairs of {:.0} ms)",
+            "differences below {:.2} % cannot be seen in 10 minutes here ({processes} processes, in each {pairs} times a pair of {:.0} ms)",
             100.0 * half_width,
             1e3 * self.pair_s
         )
