@@ -18,6 +18,14 @@ const WRONG: &[(&[&str], &[&str])] = &[
     (&["--estimator", "bdsf"], &["did you mean bsdf?"]),
     (&["--output", "pigeon"], &["output", "pigeon", "slots"]),
     (&["--strategy", ""], &["strategy", "work-stealing"]),
+    (&["--pin", "everywhere"], &["pin", "everywhere", "one-per-core", "0-3,8"]),
+    (&["--pin", ""], &["pin", "compact"]),
+    (&["--pin", "3-1"], &["pin", "3-1", "scatter"]),
+    #[cfg(target_os = "linux")]
+    (&["--pin", "60000"], &["pin", "60000", "may not run on processor 60000"]),
+    #[cfg(target_os = "linux")]
+    (&["--pin", "compact", "--threads", "9999"], &["pin", "compact", "of 9999 workers", "up to"]),
+    (&["--counters=perhaps"], &["--counters", "perhaps"]),
     (&["--decomposition", "hexagons"], &["decomposition", "hexagons", "tiles:32x32"]),
     (&["--decomposition", "tiles:0x8"], &["decomposition", "tiles:0x8", "at least 1"]),
     (&["--decomposition", "tiles:8x8:zigzag"], &["decomposition", "zigzag", "hilbert"]),

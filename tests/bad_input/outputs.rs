@@ -87,6 +87,7 @@ fn files_of_others_in_a_folder_of_results_are_kept() {
         ("out/tiny/notes.txt", run),
         ("out/tiny/machine.toml", &["run", "tiny.toml", "--out", "out", "--resume"]),
         ("out/report.html", &["reproduce", "--out", "out"]),
+        ("out/doctor.json", &["reproduce", "--out", "out"]),
         ("out/guards/machine.toml", &["reproduce", "--out", "out", "--resume"]),
         ("out/report.html", check),
         ("out/guards/guards.csv", check),

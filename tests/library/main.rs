@@ -21,6 +21,8 @@ mod layering;
 mod metric;
 mod pairing;
 mod peer;
+#[cfg(target_os = "linux")]
+mod pinning;
 mod png_chunks;
 mod properties;
 mod prose;

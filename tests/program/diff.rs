@@ -252,7 +252,7 @@ fn two_builds_are_measured_in_turns() {
     write_script(&script, &fails);
     let finished = run(folder.path(), &["run", "tiny.toml", "--baseline", "./other", "--out", "new"], 1);
     assert!(finished.err.contains("15 of"), "{}", finished.err);
-    assert_eq!(rows("new/tiny").len(), 15);
+    assert_eq!(rows("new/tiny").len(), 5 * 3 * 2);
 }
 
 /// Instructions are counted beside the rows; counts that differ by a thousandth or less are equal. Without valgrind the

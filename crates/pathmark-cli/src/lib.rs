@@ -33,7 +33,7 @@ Examples:
   pathmark simulate rows.csv --workers 1..64                 forecast a traced run on more cores
 
 Measure: reproduce, run, rank, why, diff, price, report, claims    Render: render, merge, image
-Look inside: inspect, simulate    Ask: list, new, selftest, shell";
+Look inside: inspect, simulate    Ask: doctor, machine, list, new, selftest, shell";
 
 /// A laboratory for scheduling unequal work on many cores, and for what accuracy costs in time.
 #[derive(Parser)]

@@ -30,7 +30,7 @@ pub use words::counted;
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
 use crate::lab::Lab;
-use page::{Section, benches, block, guards, table};
+use page::{Section, benches, block, doctor, guards, table};
 use pathmark_harness::{
     analysis, atomic_file, cases_file, cluster, csv_file, digest, error, experiment, files, film_file, guard_prices,
     image_io, input, kernel, lab, measure, metric, scene, shell, simulate, strategy,
@@ -64,6 +64,9 @@ pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
     }
     for section in [guards::section(out)?, benches::section(out)?].into_iter().flatten() {
         add(&out.join(&section.name), section)?;
+    }
+    if !sections.is_empty() {
+        sections.extend(doctor::section(out)?);
     }
     if let Some(section) = claims::section(lab, out)? {
         sections.insert(0, section);

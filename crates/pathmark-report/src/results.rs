@@ -224,12 +224,14 @@ fn check_identities(records: &[Record], path: &Path) -> Result<()> {
 /// Names the schedules of the rows: the strategy, and the other properties that distinguish schedules of the same
 /// image.
 fn named(records: Vec<Record>) -> Vec<Row> {
-    let parts: [Part<Record>; 5] = [
+    let parts: [Part<Record>; 7] = [
         |record| record.output.clone(),
         Record::kernel_name,
         |record| if record.kernel_fallback.is_empty() { String::new() } else { "fallback".to_string() },
         |record| record.effects.clone(),
         |record| record.accelerator.clone(),
+        |record| if record.pin.is_empty() { String::new() } else { format!("pin {}", record.pin) },
+        |record| if record.counters { "with counters".to_string() } else { String::new() },
     ];
     let told = |record: &Record| {
         (

@@ -2,6 +2,7 @@
 //! files.
 
 mod files;
+mod machine;
 mod names;
 mod rounds;
 mod scenes;

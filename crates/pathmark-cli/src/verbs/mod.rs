@@ -2,9 +2,11 @@
 
 mod claims;
 mod diff;
+mod doctor;
 mod image;
 mod inspect;
 mod list;
+mod machine;
 mod merge;
 mod new;
 mod overall_progress;
@@ -64,6 +66,10 @@ pub(super) enum Verb {
     Claims(claims::Arguments),
     /// Write a commented starter file for an experiment or a scene.
     New(new::Arguments),
+    /// Examine this machine before a sweep: what disturbs measurements, and which differences can be seen?
+    Doctor(doctor::Arguments),
+    /// Show processors, cores, sockets, memory nodes and caches, and which of them may be used.
+    Machine(machine::Arguments),
     /// List all names that options and files accept, or explain one, such as a warning.
     List(list::Arguments),
     /// Print completion scripts and manual pages.
@@ -95,6 +101,8 @@ impl Verb {
             Self::Selftest(arguments) => selftest::run(&arguments, lab, console),
             Self::Shell(what) => what.run(),
             Self::New(arguments) => new::run(&arguments),
+            Self::Doctor(arguments) => doctor::run(&arguments, lab, console),
+            Self::Machine(arguments) => machine::run(&arguments),
             Self::List(arguments) => list::run(&arguments, lab),
             Self::Cell { file } => crate::experiment::child_main(lab, file.as_deref()),
         }

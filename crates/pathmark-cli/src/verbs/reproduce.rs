@@ -4,12 +4,14 @@ use super::overall_progress::OverallProgress;
 use super::prelude::*;
 use super::run::{Size, check_failures, note_doubts, rows, tell_left_out};
 use super::selftest::{claim_guards, has_prices, price_guards, try_cases, write_cases, write_guards};
-use super::strict::Strict;
+use super::{doctor, strict::Strict};
 use crate::cases_file;
 use crate::check::{self, Case, Effort};
 use crate::command_line;
 use crate::console::output::lock_folder;
-use crate::experiment::{Definition, Options, Plan, Power, Prices, Profile, RecordsFile, Summary, Sweep, Timeout};
+use crate::experiment::{
+    DOCTOR, Definition, Examination, Options, Plan, Power, Prices, Profile, RecordsFile, Summary, Sweep, Timeout,
+};
 use crate::guard_prices::FOLDER;
 use crate::lock::Sharing;
 use crate::measure::{LeftOut, TimingConcerns, utc_now};
@@ -66,6 +68,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
         return Plans::new(lab, &sweeps)?.print(left_out);
     }
     report::claim("out", &arguments.out, &mut files)?;
+    files.renews("out", &arguments.out.join(DOCTOR), |path| Examination::read(path).is_ok())?;
     let _lock = lock_folder(&arguments.out, Sharing::Alone)?;
     if !arguments.resume {
         put_aside(&arguments.out, lab, console)?;
@@ -73,6 +76,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     if !has_prices(&arguments.out) {
         claim_guards(&arguments.out, &mut files)?;
     }
+    doctor::examine_into(&arguments.out, console)?;
     let Total { rows, failed, timed_out, invalid, left_out, doubts } = run_all(&sweeps, profile, lab, console)?;
     // The cases take longer than a sixth of all quick experiments, so the quick profile leaves them to `selftest --out`.
     if profile != Profile::Quick && !cases_file::is_in(&arguments.out) {
@@ -150,7 +154,9 @@ fn put_aside(out: &Path, lab: &Lab, console: &Console) -> Result<()> {
     let earlier = out.join("earlier").join(stamp);
     // Verdicts are of the rows beside them.
     let verdicts = Some(claims::MARKDOWN).filter(|name| claims::is_markdown(&out.join(name)));
-    for name in names.into_iter().chain([FOLDER, cases_file::FOLDER, claims::FOLDER]).chain(verdicts) {
+    let examination = Some(DOCTOR).filter(|name| Examination::read(&out.join(name)).is_ok());
+    let others = [FOLDER, cases_file::FOLDER, claims::FOLDER].into_iter().chain(verdicts).chain(examination);
+    for name in names.into_iter().chain(others) {
         let folder = out.join(name);
         if folder.exists() {
             std::fs::create_dir_all(&earlier).map_err(|e| Error::system("creating", &earlier, e))?;

@@ -95,6 +95,11 @@ impl<const WHAT: bool> Args for Options<WHAT> {
             let option = Arg::new(axis.name).long(axis.name).value_name(axis.value_name).help(axis.about);
             let option = option.help_heading(if WHAT { "Image" } else { "Schedule" });
             let option = option.value_parser(parser(axis)).allow_hyphen_values(axis.name == "size");
+            let option = match axis.kind {
+                // `--counters` alone means yes. A value needs `=`, because the next word may be the scene.
+                Kind::Switch => option.num_args(0..=1).require_equals(true).default_missing_value("true"),
+                _ => option,
+            };
             if axis.default.is_empty() { option } else { option.default_value(axis.default) }
         }))
     }

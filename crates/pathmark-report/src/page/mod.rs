@@ -3,6 +3,7 @@
 mod again;
 pub(crate) mod benches;
 pub(crate) mod block;
+pub(crate) mod doctor;
 pub(crate) mod guards;
 pub(crate) mod table;
 
