@@ -2,7 +2,9 @@
 
 use super::External;
 use crate::error::{InputError, Result};
-use crate::measure::{ImageKey, SETTINGS, ScheduleKey, Setting, Settings, Setup, available_threads, schedule_name};
+use crate::measure::{
+    ImageKey, Kind, SETTINGS, ScheduleKey, Setting, Settings, Setup, available_threads, schedule_name,
+};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::path::PathBuf;
@@ -12,6 +14,8 @@ pub struct Cell {
     /// The settings in one word: the key by which a resumed sweep finds its finished rows.
     pub id: String,
     pub settings: Settings,
+    /// The settings as its rows have them.
+    pub(super) keys: (ImageKey, ScheduleKey),
     pub scene: SceneVersion,
     /// Its rows: one, or the points of its curve, in the order of samples per pixel.
     pub points: Vec<CellPoint>,
@@ -82,13 +86,21 @@ impl Cell {
         let samples = u64::from(spec.width) * u64::from(spec.height) * u64::from(settings.spp);
         let weight = samples / settings.workers(settings.threads).min(available_threads()) as u64;
         let scene = SceneVersion::of(setup);
-        Self { id, points, weight: weight.max(1), at_most: None, external: None, scene, settings }
+        let keys = (setup.image_key(), setup.schedule_key());
+        Self { id, points, weight: weight.max(1), at_most: None, external: None, scene, settings, keys }
     }
 
     /// Its value on an axis, as filters compare it.
     pub fn shown(&self, axis: &Setting) -> String {
         let strategy = schedule_name(&self.settings.strategy, &self.settings.decomposition).to_string();
-        axis.show(&Settings { strategy, ..self.settings.clone() })
+        let asked = axis.show(&Settings { strategy, ..self.settings.clone() });
+        let (image, schedule) = &self.keys;
+        // Where nothing was asked for, the value that the program chose.
+        if asked.is_empty() && axis.kind == Kind::Auto {
+            axis.found(image, schedule).unwrap_or_default()
+        } else {
+            asked
+        }
     }
 
     /// Whether it has one of the values that a filter `field=value,value...` asks for.

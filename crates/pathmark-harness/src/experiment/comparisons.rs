@@ -137,3 +137,33 @@ impl Comparisons {
         groups
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::Lab;
+
+    fn groups(compare: &str) -> Vec<Vec<usize>> {
+        let text = format!(
+            "title = \"t\"\nquestion = \"q\"\nfigures = []\n{compare}\n[matrix]\nscene = [\"cornell\", \"cornell-lens\"]\n\
+             spp = [4]\nstrategy = [\"serial\"]\nthreads = [1]\ndecomposition = [\"rows\"]\nkernel = [\"scalar\"]\n\
+             effects = [\"fitting\", \"all\"]\n"
+        );
+        let definition = Definition::from_text(&Lab::built_in(), "x", "x.toml", &text).unwrap();
+        let cells = definition.cells(Profile::Quick).unwrap();
+        assert_eq!(cells.len(), 4);
+        Comparisons::of(&definition, Profile::Quick, &cells).unwrap().groups(cells.len())
+    }
+
+    /// A cell is selected by the profile that fits its scene, even if it asked for none. Cells of two scenes are compared
+    /// only if the entry names scenes.
+    #[test]
+    fn cells_are_selected_by_the_values_that_they_use() {
+        assert_eq!(groups("[[compare]]\nwith = { effects = [\"smallpt\", \"lens\"] }").len(), 2);
+        assert_eq!(groups("[[compare]]\nwith = { effects = [\"smallpt\"] }").len(), 1);
+        let across =
+            "[[compare]]\nwhat = { scene = [\"cornell-lens\"] }\nwith = { scene = [\"cornell\"], effects = [\"all\"] }";
+        assert_eq!(groups(across).iter().map(Vec::len).collect::<Vec<_>>(), [3]);
+        assert!(groups("[[compare]]\nwith = { effects = [\"fog\"] }").is_empty());
+    }
+}

@@ -16,7 +16,7 @@ use super::matrix::LARGEST_CELLS;
 use super::{Cell, CellPoint, Definition, Profile, Progress, SceneVersion};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
-use crate::measure::{Settings, parse_size};
+use crate::measure::{ImageKey, ScheduleKey, Settings, parse_size};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::path::Path;
@@ -142,8 +142,17 @@ impl Definition {
                 let points = vec![CellPoint { id: id.clone(), spp, image: id.clone() }];
                 let version = SceneVersion { hash: scene.hash.clone(), files: scene.files.clone() };
                 let external = Some(external.clone());
-                let cell =
-                    Cell { id, settings, scene: version, points, weight: samples.max(1), at_most: None, external };
+                let keys = (ImageKey::of(&settings), ScheduleKey::of(&settings));
+                let cell = Cell {
+                    id,
+                    settings,
+                    keys,
+                    scene: version,
+                    points,
+                    weight: samples.max(1),
+                    at_most: None,
+                    external,
+                };
                 match places.get(&cell.id).map(|place: &usize| &cells[*place]) {
                     None if cells.len() as u64 >= LARGEST_CELLS => {
                         let problem = "has too many combinations of spp and seed";

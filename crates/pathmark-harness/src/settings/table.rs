@@ -118,14 +118,18 @@ impl Setting {
 
     /// The name that figures give to its value; `None` if nothing was chosen.
     pub fn label_of(&self, image: &ImageKey, schedule: &ScheduleKey) -> Option<String> {
+        self.found(image, schedule).map(|value| self.label.replace("{}", &value))
+    }
+
+    /// The value that was used, as text; `None` if there was none.
+    pub(crate) fn found(&self, image: &ImageKey, schedule: &ScheduleKey) -> Option<String> {
         let columns = if self.changes_image { image.columns() } else { schedule.columns() };
         let text = |wanted| columns.iter().find(|column| column.name == wanted).and_then(|column| column.text.clone());
         let own = text(self.column)?;
-        let value = match self.second_column.filter(|_| self.name == SIZE).and_then(text) {
+        Some(match self.second_column.filter(|_| self.name == SIZE).and_then(text) {
             Some(height) => format!("{own}x{height}"),
             None => own,
-        };
-        Some(self.label.replace("{}", &value))
+        })
     }
 
     fn add_to(self, table: &mut Vec<Self>, column: &'static str, changes_image: bool, (kind, field): (Kind, Access)) {
