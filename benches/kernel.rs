@@ -43,7 +43,7 @@ fn kernel(criterion: &mut Criterion, scene: &str, estimators: &[&str]) {
         for (name, spec) in kernels() {
             let spec = Spec { estimator: (*estimator).to_string(), ..spec };
             let choice = choose(&loaded, &spec).expect("every listed name can be chosen");
-            if !choice.fallback().is_empty() {
+            if !choice.fallback.is_empty() {
                 continue;
             }
             let built = build(&loaded, &spec).expect("every listed estimator can be built");

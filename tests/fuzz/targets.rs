@@ -8,7 +8,7 @@ use pathmark::experiment::{
 use pathmark::film_file::read_film;
 use pathmark::image_io::{self, Image};
 use pathmark::kernel::Spec;
-use pathmark::measure::{Checkpoint, Measured, Position, Record, Rounds, Settings, Setup, TraceFile};
+use pathmark::measure::{Checkpoint, Position, Record, Rounds, Settings, Setup, TraceFile};
 use pathmark::scene::{self, SCENES};
 use sha2::{Digest, Sha256};
 use std::fs;
@@ -326,7 +326,7 @@ fn rows() -> Vec<Vec<u8>> {
         let setup = setup(strategy);
         let outcome = setup.run(None).unwrap();
         let (experiment, cell) = ("tiny".to_string(), format!("cornell/{strategy}"));
-        let record = Record::new(&setup, &outcome, Measured::default());
+        let record = Record::new(&setup, &outcome);
         file.append(&Record { experiment, cell, repetition, ..record }).unwrap();
     }
     let whole = fs::read(path).unwrap();

@@ -1,7 +1,7 @@
 //! Workloads other than light keep the same promise: one result with every strategy and decomposition.
 
 use pathmark::kernel::workload::WORKLOADS;
-use pathmark::measure::{Measured, Record, Settings, Setup};
+use pathmark::measure::{Record, Settings, Setup};
 use pathmark::strategy::STRATEGIES;
 use std::collections::BTreeSet;
 
@@ -37,7 +37,7 @@ fn every_strategy_and_decomposition_gives_the_same_result() {
 #[test]
 fn a_row_describes_the_work_and_no_light() {
     let setup = Setup::prepare(settings("mandelbrot", "rayon", "rows")).unwrap();
-    let row = Record::new(&setup, &setup.run(None).unwrap(), Measured::default());
+    let row = Record::new(&setup, &setup.run(None).unwrap());
     assert_eq!((row.scene.as_str(), row.kernel.as_str(), row.jobs), ("mandelbrot", "workload", 9));
     assert_eq!([row.estimator, row.sampler, row.effects, row.accelerator, row.roulette], [const { String::new() }; 5]);
     assert_eq!(setup.image_key().scene_hash, row.scene_hash);

@@ -123,7 +123,7 @@ fn a_scene_edited_before_its_reference_ends_the_sweep() {
         let folder = tempfile::tempdir().unwrap();
         prepare(folder.path(), "true");
         let definition = Definition::load(&Lab::built_in(), folder.path().join("tiny.toml").to_str().unwrap()).unwrap();
-        let options = Options::usual(folder.path().join("out"));
+        let options = Options { out: folder.path().join("out"), ..Options::default() };
         let sweep = Sweep::new(&definition, &options, &mut Files::default()).unwrap();
         let mut text = fs::read_to_string(folder.path().join(name)).unwrap();
         text.push('\n');

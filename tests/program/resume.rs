@@ -107,32 +107,6 @@ fn a_failed_row_is_run_again() {
     assert_eq!(orders.len(), rows.len(), "two rows claim the same position in the sweep");
 }
 
-/// A cell with a doubtful row runs once more, in a new repetition together with the serial run that it is compared
-/// with. All rows stay. Rows that would always be doubtful are not run again.
-#[test]
-fn doubtful_cells_run_again() {
-    let (folder, records) = prepared(TINY);
-    finish(pathmark(folder.path(), &RUN)).with_code(0);
-    let doubtful = rows(&records).iter().position(|row| row["strategy"] == "static-blocks").unwrap();
-    // Fixed warnings, whatever else the machine did meanwhile.
-    rewrite(&records, |index, column, field| match (column, index == doubtful) {
-        ("warnings", true) => "foreign-load(60 %)",
-        ("warnings", false) => "too-short",
-        _ => field,
-    });
-    let before = fs::read_to_string(&records).unwrap();
-    let cell = rows(&records)[doubtful]["cell"].clone();
-    finish(pathmark(folder.path(), &RESUME)).with_code(0);
-    assert_eq!(fs::read_to_string(&records).unwrap(), before, "nobody asked for it");
-    finish(pathmark(folder.path(), &[RESUME.as_slice(), &["--rerun-doubtful"]].concat())).with_code(0);
-    assert!(fs::read_to_string(&records).unwrap().starts_with(&before));
-    let all = rows(&records);
-    let new: Vec<_> = all[15..].iter().map(|row| (row["strategy"].as_str(), row["repetition"].as_str())).collect();
-    assert_eq!(new.len(), 2, "{new:?}");
-    assert!(new.contains(&("serial", "3")) && new.contains(&("static-blocks", "3")), "{new:?}");
-    assert!(all[15..].iter().any(|row| row["cell"] == cell));
-}
-
 #[test]
 fn resuming_a_finished_sweep_changes_no_row() {
     let (folder, records) = prepared(TINY);

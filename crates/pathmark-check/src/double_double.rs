@@ -5,9 +5,10 @@ use std::ops::{Add, Mul, Neg, Sub};
 /// A number as an unevaluated sum of two f64: 106 bits (Dekker, 1971; products split after Veltkamp, without fused
 /// operations).
 #[derive(Clone, Copy)]
-pub(super) struct Dd(pub(super) f64, f64);
+pub(super) struct Dd(pub(super) f64, pub(super) f64);
 
-fn two_sum(a: f64, b: f64) -> Dd {
+/// The exact sum.
+pub(super) fn two_sum(a: f64, b: f64) -> Dd {
     let s = a + b;
     let t = s - a;
     Dd(s, (a - (s - t)) + (b - t))
@@ -61,7 +62,6 @@ impl Dd {
         let q = self.0 / o.0;
         q + (self - o * Self(q, 0.0)).0 / o.0
     }
-    /// The square root.
     pub(super) fn sqrt(self) -> Self {
         let root = self.0.sqrt();
         if root == 0.0 { self } else { two_sum(root, (self - two_product(root, root)).0 / (2.0 * root)) }

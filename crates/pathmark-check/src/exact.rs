@@ -4,8 +4,9 @@
 //! with other random numbers estimates how many samples this takes. The scores of the single pixels, which all see the
 //! same value, must scatter as chance predicts: means of the whole image hide errors that cancel between pixels.
 
+use super::trials::LEVEL;
 use super::{Effort, Trials};
-use crate::analysis::z_test::{critical_value, sidak};
+use crate::analysis::z_test::sidak;
 use crate::estimator::ESTIMATORS;
 use crate::film::{DECOMPOSITIONS, Film};
 use crate::kernel::{KERNELS, Spec};
@@ -15,8 +16,6 @@ use crate::strategy::STRATEGIES;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::sync::Arc;
 
-/// Probability of a false alarm in all comparisons of a section together, two-sided.
-const LEVEL: f64 = 1e-3;
 /// An upper bound on the comparisons of a section. Too large a bound only makes the level smaller.
 const COMPARISONS: usize = 1000;
 /// Relative tolerance for the width of a spot and for the rounding error of a sum.
@@ -57,9 +56,16 @@ pub fn every_estimator() -> impl Iterator<Item = &'static str> {
     ESTIMATORS.iter().map(|entry| entry.name)
 }
 
+/// These estimators, each with every kernel.
+pub fn with_kernels(
+    estimators: impl Iterator<Item = &'static str>,
+) -> impl Iterator<Item = (&'static str, &'static str)> {
+    estimators.flat_map(|name| KERNELS.iter().map(move |kernel| (name, kernel.name)))
+}
+
 /// The |z| that every comparison of a section must stay below.
 pub(super) fn critical() -> f64 {
-    sidak(LEVEL, COMPARISONS).and_then(critical_value).expect("a level in (0, 1)")
+    super::critical(COMPARISONS)
 }
 
 /// Mean of a channel over all samples, and its standard error.
@@ -150,11 +156,9 @@ impl<'a> Bench<'a> {
         estimators: impl Iterator<Item = &'static str>,
         exact: &[f64],
     ) {
-        for estimator in estimators {
-            for kernel in KERNELS {
-                let spec = self.spec(estimator, kernel.name);
-                self.one(&format!("{what}, {estimator}, {}", kernel.name), scene, &spec, exact, self.by_pixel);
-            }
+        for (estimator, kernel) in with_kernels(estimators) {
+            let spec = self.spec(estimator, kernel);
+            self.one(&format!("{what}, {estimator}, {kernel}"), scene, &spec, exact, self.by_pixel);
         }
     }
 
@@ -179,13 +183,11 @@ impl<'a> Bench<'a> {
         estimators: impl Iterator<Item = &'static str>,
         samples: f64,
     ) -> Vec<(String, Film)> {
-        let kernels = |estimator| KERNELS.iter().map(move |kernel| (estimator, kernel.name));
-        let ways = estimators.flat_map(kernels);
-        ways.map(|(estimator, kernel)| {
+        let film = |(estimator, kernel)| {
             let spec = self.spec(estimator, kernel);
             (format!("{estimator}, {kernel}"), self.render(scene, spec, samples).film)
-        })
-        .collect()
+        };
+        with_kernels(estimators).map(film).collect()
     }
 
     /// Number of samples that makes the interval of every channel narrow enough.

@@ -14,7 +14,7 @@
 //!
 //! # Adding one
 //!
-//! Add a line to the `CASES` of the file that fits, with the function that runs the test:
+//! Add a line to the table of its section, with the function that runs the test:
 //!
 //! ```
 //! use pathmark_check::{Case, Trials};
@@ -28,14 +28,11 @@
 
 mod analytic;
 pub mod bare_scene;
-mod case_row;
 mod double_double;
 pub mod exact;
 #[cfg(test)]
-mod fixed_point;
+mod fixed_point_tests;
 pub mod guards;
-mod image_mean;
-mod level;
 pub mod materials;
 mod meshes;
 mod path;
@@ -45,7 +42,6 @@ mod random_numbers;
 mod refusals;
 mod rendering;
 mod run;
-mod samplers;
 mod shading;
 mod sphere;
 pub mod stage;
@@ -53,15 +49,19 @@ mod statistics;
 mod trials;
 mod triangle;
 
-pub use case_row::case_row;
 pub use run::run;
 pub use trials::{Effort, Outcome, Trial, Trials};
 
+use cases_file::CaseRow;
 use pathmark_harness::{
     analysis, cases_file, effect, error, estimator, experiment, film, guard_prices, image_io, kernel, lab, material,
     math, measure, metric, sampling, scene, simd, strategy,
 };
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use trials::critical;
+
+/// The rounding unit.
+const U: f64 = f64::EPSILON / 2.0;
 
 /// The sections of the catalogue that the table contains, in catalogue order.
 pub static SECTIONS: &[Section] = &[
@@ -78,8 +78,7 @@ pub static SECTIONS: &[Section] = &[
 pub struct Section {
     /// The subject, for headings.
     pub title: &'static str,
-    /// The cases, by file.
-    pub cases: &'static [&'static [Case]],
+    pub cases: &'static [Case],
 }
 
 /// A hard case.
@@ -90,6 +89,11 @@ pub struct Case {
     pub tries: &'static str,
     /// Runs the test for everything that it applies to: formulas, precisions, kernels, estimators, strategies.
     pub run: fn(&mut Trials),
+}
+
+/// A line of the table. [`Case`] describes the fields.
+const fn case(id: &'static str, tries: &'static str, run: fn(&mut Trials)) -> Case {
+    Case { id, tries, run }
 }
 
 impl Case {
@@ -107,10 +111,27 @@ impl Case {
 
 /// All cases, section by section.
 pub fn cases() -> impl Iterator<Item = &'static Case> {
-    SECTIONS.iter().flat_map(|section| section.cases.iter().copied().flatten())
+    SECTIONS.iter().flat_map(|section| section.cases)
 }
 
 /// The case with this name.
 pub fn find(id: &str) -> Option<&'static Case> {
     cases().find(|case| case.id == id)
+}
+
+/// The row of a case in `check/cases.csv`. It shows the first trial that failed, or else the last.
+pub fn case_row(case: &Case, outcome: &Outcome) -> CaseRow {
+    let shown = outcome.failures().next().or(outcome.trials.last());
+    let of = |part: fn(&Trial) -> String| shown.map(part).unwrap_or_default();
+    CaseRow {
+        id: case.id.to_string(),
+        tries: case.tries.to_string(),
+        pass: outcome.passed(),
+        trials: outcome.trials.len(),
+        failed: outcome.failures().count(),
+        variant: of(|trial| trial.variant.clone()),
+        expected: of(|trial| trial.expected.clone()),
+        found: of(|trial| trial.found.clone()),
+        skipped: outcome.skipped.join("; "),
+    }
 }

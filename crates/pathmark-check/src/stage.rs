@@ -91,6 +91,11 @@ pub fn fog(absorption: f64, scattering: f64, emission: f64) -> String {
     format!("[fog]\nabsorption = {absorption:?}\nscattering = {scattering:?}\nemission = {emission:?}\n")
 }
 
+/// The inside of a unit sphere, all of which is alike.
+pub fn hollow(material: &str, emission: [f64; 3]) -> Scene {
+    scene(&[camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), object(&sphere([0.0; 3], 1.0), material, emission)])
+}
+
 /// Reads a scene from its parts, or returns the error. Text that belongs before the first table must come first.
 pub fn try_scene(parts: &[String]) -> Result<Scene> {
     Scene::from_toml(&format!("about = 'a case'\n{}", parts.concat()))

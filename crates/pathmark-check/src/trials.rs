@@ -1,7 +1,17 @@
 //! Trials of a case: variant, expected result and found result.
 
+use crate::analysis::z_test::{critical_value, sidak};
 use serde::Serialize;
 use std::fmt::{Debug, Display};
+
+/// The probability that at least one test of a case, or of a section of closed forms, fails although everything is
+/// right.
+pub(super) const LEVEL: f64 = 1e-3;
+
+/// Critical absolute score of each of `tests` tests together.
+pub(super) fn critical(tests: usize) -> f64 {
+    sidak(LEVEL, tests).and_then(critical_value).unwrap_or(f64::INFINITY)
+}
 
 /// Number of random inputs that a case may use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,9 +27,7 @@ pub enum Effort {
 pub struct Trial {
     /// Subject of the comparison: a formula, a precision, an estimator, a strategy.
     pub variant: String,
-    /// The expected result.
     pub expected: String,
-    /// The actual result.
     pub found: String,
     /// Whether the actual result is right.
     pub passed: bool,
@@ -39,7 +47,6 @@ impl Outcome {
         self.trials.iter().all(|trial| trial.passed) && !(self.trials.is_empty() && self.skipped.is_empty())
     }
 
-    /// The trials that failed.
     pub fn failures(&self) -> impl Iterator<Item = &Trial> {
         self.trials.iter().filter(|trial| !trial.passed)
     }
@@ -60,7 +67,6 @@ impl Trials {
         self.outcome
     }
 
-    /// The effort that is allowed.
     pub fn effort(&self) -> Effort {
         self.effort
     }

@@ -3,8 +3,7 @@
 
 use super::library::{functions, open};
 use super::nvrtc::{self, ptx_of};
-use super::{Costs, Device, DeviceError, Listed, Loaded, Result};
-use std::collections::HashMap;
+use super::{Compiled, Costs, Device, DeviceError, Listed, Loaded, Result};
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::ptr::{null, null_mut};
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
@@ -201,13 +200,12 @@ impl Drop for Buffer {
     }
 }
 
-/// A CUDA GPU.
 pub(crate) struct Cuda {
     about: String,
     width: u32,
     capability: u32,
     context: Arc<Context>,
-    functions: Mutex<HashMap<String, Shared>>,
+    functions: Compiled<Shared>,
 }
 
 impl Cuda {
@@ -228,7 +226,7 @@ impl Cuda {
             width: of(MULTIPROCESSORS).max(1) * ITEMS_PER_MULTIPROCESSOR,
             capability: 10 * of(CAPABILITY_MAJOR) + of(CAPABILITY_MINOR),
             context,
-            functions: Mutex::default(),
+            functions: Compiled(Mutex::default()),
         })
     }
 
@@ -262,15 +260,7 @@ impl Device for Cuda {
 
     fn bind(&self, text: &str, numbers: &[f64], words: &[u32]) -> Result<Box<dyn Loaded>> {
         self.context.enter()?;
-        let compile = || {
-            let mut functions = self.functions.lock().unwrap_or_else(PoisonError::into_inner);
-            if let Some(function) = functions.get(text) {
-                return Ok(*function);
-            }
-            let function = self.compile(text)?;
-            functions.insert(text.to_string(), function);
-            Ok(function)
-        };
+        let compile = || self.functions.get(text, || self.compile(text));
         let copy = |function| Ok((function, Buffer::of(&self.context, numbers)?, Buffer::of(&self.context, words)?));
         let ((function, numbers, words), costs) = Costs::of(compile, copy)?;
         let (kept, context) = (Mutex::default(), Arc::clone(&self.context));

@@ -35,8 +35,5 @@ pub enum DeviceError {
     },
     /// The device does not round as IEEE 754 demands.
     #[error("it does not compute according to IEEE 754: {operation}")]
-    Inexact {
-        /// The operation and its operands.
-        operation: String,
-    },
+    Inexact { operation: String },
 }

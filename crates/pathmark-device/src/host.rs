@@ -3,14 +3,13 @@
 #![expect(unsafe_code, reason = "a function that was compiled a moment ago is called; its text is in this crate")]
 
 use super::library::in_full;
-use super::{Costs, Device, DeviceError, Dialect, HOST, Listed, Loaded, Result};
+use super::{Compiled, Costs, Device, DeviceError, Dialect, HOST, Listed, Loaded, Result};
 use libloading::Library;
-use std::collections::HashMap;
 use std::env;
 use std::ffi::{OsString, c_void};
 use std::fs;
 use std::process::Command;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 /// `pathmark_run` of `dialect/c_entry.cl`.
 type Run = unsafe extern "C" fn(*const *const c_void, *const u32, u32, *mut u64);
@@ -54,12 +53,12 @@ pub(crate) fn list() -> Vec<Listed> {
 /// The host processor, programmed with the C compiler.
 pub(crate) struct Host {
     about: String,
-    compiled: Mutex<HashMap<String, Arc<Library>>>,
+    compiled: Compiled<Arc<Library>>,
 }
 
 impl Host {
     pub(crate) fn open() -> Result<Self> {
-        Ok(Self { about: version()?, compiled: Mutex::default() })
+        Ok(Self { about: version()?, compiled: Compiled(Mutex::default()) })
     }
 
     fn compile(&self, text: &str) -> Result<Library> {
@@ -98,15 +97,7 @@ impl Device for Host {
     }
 
     fn bind(&self, text: &str, numbers: &[f64], words: &[u32]) -> Result<Box<dyn Loaded>> {
-        let compile = || {
-            let mut compiled = self.compiled.lock().unwrap_or_else(PoisonError::into_inner);
-            if let Some(library) = compiled.get(text) {
-                return Ok(Arc::clone(library));
-            }
-            let library = Arc::new(self.compile(text)?);
-            compiled.insert(text.to_string(), Arc::clone(&library));
-            Ok(library)
-        };
+        let compile = || self.compiled.get(text, || self.compile(text).map(Arc::new));
         let copy = |library| Ok((library, numbers.to_vec(), words.to_vec()));
         let ((library, numbers, words), costs) = Costs::of(compile, copy)?;
         // SAFETY: the text defines this function with this type.

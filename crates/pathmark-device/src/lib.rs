@@ -23,17 +23,15 @@ mod host;
 mod library;
 mod nvrtc;
 mod opencl;
-mod opencl_driver;
-mod ptx;
 mod self_test;
 
+use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use std::time::Instant;
 
 pub use dialect::Dialect;
 pub use error::DeviceError;
-pub use nvrtc::ptx_of;
-pub use ptx::inexact_instructions;
+pub use nvrtc::{inexact_instructions, ptx_of};
 
 /// The result of an operation that a device can make fail.
 pub type Result<T> = std::result::Result<T, DeviceError>;
@@ -102,6 +100,22 @@ impl Costs {
     }
 }
 
+/// Compiled programs by their texts.
+struct Compiled<T>(Mutex<HashMap<String, T>>);
+
+impl<T: Clone> Compiled<T> {
+    /// Compiles a text, unless it was compiled before.
+    fn get(&self, text: &str, compile: impl FnOnce() -> Result<T>) -> Result<T> {
+        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(found) = known.get(text) {
+            return Ok(found.clone());
+        }
+        let made = compile()?;
+        known.insert(text.to_string(), made.clone());
+        Ok(made)
+    }
+}
+
 /// A program on a device, with its inputs.
 pub trait Loaded: Send + Sync {
     /// The time that compilation and copying took.
@@ -122,7 +136,7 @@ impl dyn Loaded {
 
 /// Returns every available device, and the interfaces without any.
 pub fn list() -> Vec<Listed> {
-    [cuda::list(), opencl_driver::list(), host::list()].concat()
+    [cuda::list(), opencl::list(), host::list()].concat()
 }
 
 /// The open devices; each is opened once.

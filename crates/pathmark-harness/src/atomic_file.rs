@@ -64,7 +64,6 @@ pub fn check_name(path: &Path) -> Result<()> {
     Err(error.allowed(format!("up to {LONGEST_NAME} bytes")).into())
 }
 
-/// A destination that is, or can become, a regular file.
 struct Target {
     file: PathBuf,
     directory: PathBuf,

@@ -6,22 +6,16 @@ use crate::files::Files;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// The folder of results that contains the list.
 pub const FOLDER: &str = "check";
-/// The list's file in this folder.
 pub const FILE: &str = "cases.csv";
 
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CaseRow {
-    /// Name of the case in the catalogue.
     pub id: String,
-    /// Short description of the test.
     pub tries: String,
-    /// Whether no trial failed.
     pub pass: bool,
     pub trials: usize,
-    /// Number of failed trials.
     pub failed: usize,
     /// Variant of the trial that is shown: the first that failed, or else the last.
     pub variant: String,
@@ -31,7 +25,6 @@ pub struct CaseRow {
     pub skipped: String,
 }
 
-/// Whether a folder of results already contains the list.
 pub fn is_in(out: &Path) -> bool {
     out.join(FOLDER).join(FILE).is_file()
 }
@@ -42,7 +35,6 @@ pub fn claim(out: &Path, files: &mut Files) -> Result<()> {
     files.renews("out", &out.join(FOLDER).join(FILE), |_| false)
 }
 
-/// Writes the list into a folder of results.
 pub fn write(out: &Path, rows: &[CaseRow]) -> Result<()> {
     let folder = out.join(FOLDER);
     std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;

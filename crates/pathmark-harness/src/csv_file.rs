@@ -6,7 +6,6 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::path::Path;
 
-/// Writes rows with the names of their columns above them.
 pub fn write<R: Serialize>(path: &Path, rows: impl IntoIterator<Item = R>) -> Result<()> {
     atomic_file::write(path, |file| {
         let mut writer = csv::Writer::from_writer(file);
@@ -15,7 +14,6 @@ pub fn write<R: Serialize>(path: &Path, rows: impl IntoIterator<Item = R>) -> Re
     })
 }
 
-/// Reads all rows.
 pub fn read<R: DeserializeOwned>(path: &Path) -> Result<Vec<R>> {
     let file = std::fs::File::open(path).map_err(|e| Error::system("reading", path, e))?;
     let rows: csv::Result<Vec<R>> = csv::Reader::from_reader(file).into_deserialize().collect();

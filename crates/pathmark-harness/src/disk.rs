@@ -7,16 +7,13 @@
 use std::cell::RefCell;
 use std::io::{self, Write};
 
-/// A step of writing a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
-    /// A file is created.
     Create,
     /// This many bytes are handed to the system.
     Write(usize),
     /// The system is asked to sync the written bytes to the disk.
     Sync,
-    /// A finished file is renamed to its final name.
     Rename,
 }
 
@@ -57,12 +54,10 @@ pub fn step(step: Step) -> io::Result<()> {
     allowed(step).map(|_| ())
 }
 
-/// Returns how many bytes of a write are accepted.
 fn allowed(step: Step) -> io::Result<usize> {
     FAULTS.with_borrow_mut(|faults| faults.as_mut().map_or(Ok(usize::MAX), |faults| faults(step)))
 }
 
-/// A file whose writes are subject to the faults.
 #[derive(Debug)]
 pub struct OnDisk<F>(pub F);
 

@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 /// The longest chain of links that is followed, as in the system.
 const MOST_LINKS: usize = 40;
 
-/// A file's identity.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct FileId {
     device: u64,
@@ -36,7 +35,6 @@ impl FileId {
     }
 }
 
-/// Returns the folder that contains a file.
 pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }

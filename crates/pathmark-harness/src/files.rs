@@ -24,7 +24,6 @@ pub fn create_folder(field: &str, folder: &Path) -> Result<()> {
     })
 }
 
-/// The use of a file by a command.
 #[derive(Debug)]
 enum Use {
     /// The command reads the file, which the user knows by this description.
@@ -33,7 +32,6 @@ enum Use {
     Output(String),
 }
 
-/// The files of one command.
 #[derive(Debug, Default)]
 pub struct Files {
     uses: HashMap<FileId, Use>,
@@ -48,7 +46,6 @@ impl Files {
         }
     }
 
-    /// Registers the files of a scene as inputs.
     pub fn reads_scene(&mut self, files: &[PathBuf]) {
         for path in files {
             self.reads("a file of the scene", path);

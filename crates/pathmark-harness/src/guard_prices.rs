@@ -5,19 +5,14 @@ use crate::error::Result;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// Confidence level of all intervals.
 pub const LEVEL: f64 = 0.95;
 
-/// The folder of results that contains the list.
 pub const FOLDER: &str = "guards";
-/// The list's file in this folder.
 pub const FILE: &str = "guards.csv";
 
-/// Cost and benefit of one guard.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PriceRow {
-    /// Name of the guarded property.
     pub guard: String,
     /// Definition of the errors, with their unit.
     pub error: String,
@@ -29,15 +24,12 @@ pub struct PriceRow {
     pub error_with: f64,
     pub error_with_low: f64,
     pub error_with_high: f64,
-    /// Error of the alternative.
     pub error_without: f64,
     pub error_without_low: f64,
     pub error_without_high: f64,
-    /// The operation that is timed.
     pub operation: String,
     /// Median nanoseconds per operation of the program's method; empty if it could not be timed.
     pub ns_with: Option<f64>,
-    /// Median nanoseconds per operation of the alternative.
     pub ns_without: Option<f64>,
     /// Time with the guard divided by time without: median over paired rounds, with its 95 % interval.
     pub time_ratio: Option<f64>,
@@ -45,12 +37,10 @@ pub struct PriceRow {
     pub time_ratio_high: Option<f64>,
 }
 
-/// Writes the list.
 pub fn write_prices(path: &Path, rows: &[PriceRow]) -> Result<()> {
     csv_file::write(path, rows)
 }
 
-/// Reads a list.
 pub fn read_prices(path: &Path) -> Result<Vec<PriceRow>> {
     csv_file::read(path)
 }

@@ -22,7 +22,6 @@ pub const THREAD_PER_ROW: &str = "thread-per-row";
 /// The strategy that speedups are compared with.
 pub const SERIAL: &str = "serial";
 
-/// The tables of everything that a user can choose by name.
 pub struct Lab {
     name: Option<&'static str>,
     version: Option<&'static str>,
@@ -53,7 +52,6 @@ impl Default for Lab {
 }
 
 impl Lab {
-    /// Returns the built-in tables.
     pub fn new() -> Self {
         Self {
             name: None,
@@ -97,7 +95,6 @@ impl Lab {
         [name, version]
     }
 
-    /// Adds a strategy.
     #[must_use]
     #[track_caller]
     pub fn strategy(mut self, entry: Strategy) -> Self {
@@ -117,7 +114,6 @@ impl Lab {
         self
     }
 
-    /// Adds an estimator.
     #[must_use]
     #[track_caller]
     pub fn estimator<E: Estimator + 'static>(mut self, name: &'static str, estimator: E) -> Self {
@@ -171,12 +167,10 @@ impl Lab {
         self.added.push((kind, name.to_string(), at));
     }
 
-    /// Returns an error if a name has two meanings.
     pub fn check(&self) -> Result<()> {
         self.problem.as_ref().map_or(Ok(()), |problem| Err(problem.clone().into()))
     }
 
-    /// Returns the strategies, in the order in which they are listed.
     pub fn strategies(&self) -> &[Strategy] {
         &self.strategies
     }
@@ -189,8 +183,8 @@ impl Lab {
         };
         let entry = self.strategies.iter().find(|entry| entry.name == name).copied().ok_or_else(|| {
             if let Some((_, feature)) = LEFT_OUT.iter().find(|(left_out, _)| *left_out == name) {
-                let allowed = format!("a program built by `cargo run --release --features {feature} -- ...`");
-                return InputError::new("strategy", name, "is missing from this build").allowed(allowed);
+                return InputError::new("strategy", name, "is missing from this build")
+                    .allowed(shell::build_with(feature));
             }
             let names: Vec<&str> = self.strategies.iter().map(|entry| entry.name).collect();
             InputError::new("strategy", name, "there is no strategy of that name").allowed(names.join(", "))
@@ -203,37 +197,30 @@ impl Lab {
         }
     }
 
-    /// Returns the kernels, in the order in which they are listed.
     pub fn kernels(&self) -> &[KernelEntry] {
         &self.kernels
     }
 
-    /// Returns the tables from which a kernel is chosen and built.
     pub fn kernel_tables(&self) -> Tables<'_> {
         Tables { kernels: &self.kernels, estimators: &self.estimators }
     }
 
-    /// Returns the estimators, in the order in which they are listed.
     pub fn estimators(&self) -> impl Iterator<Item = &EstimatorEntry> {
         ESTIMATORS.iter().chain(self.estimators.iter().map(CustomEstimator::entry))
     }
 
-    /// Returns the workloads, in the order in which they are listed.
     pub fn workloads(&self) -> &[workload::Entry] {
         &self.workloads
     }
 
-    /// Returns the workload called `name`.
     pub fn workload_named(&self, name: &str) -> Option<&workload::Entry> {
         self.workloads.iter().find(|entry| entry.name == name)
     }
 
-    /// Returns the names of the scenes, in the order in which they are listed.
     pub fn scenes(&self) -> impl Iterator<Item = &str> {
         self.scenes.names()
     }
 
-    /// Returns the scene of that name, or the one in the file of that path.
     pub fn load_scene(&self, name_or_path: &str) -> Result<Scene> {
         self.scenes.load(name_or_path)
     }
@@ -244,7 +231,6 @@ impl Lab {
         self.scenes.estimator_of(name_or_path)
     }
 
-    /// Returns name and text of the experiments that a program added.
     pub fn own_experiments(&self) -> &[(String, String)] {
         &self.experiments
     }
@@ -304,8 +290,8 @@ mod tests {
             choose_among(&scene, &spec, lab.kernel_tables()).map_err(|error| error.to_string())
         };
         let choice = chosen("picky").unwrap();
-        assert_eq!((choice.kernel(), choice.fallback()), ("scalar", "everything"));
-        assert_eq!(chosen("scalar").unwrap().fallback(), "");
+        assert_eq!((choice.plan.name(), choice.fallback), ("scalar", "everything"));
+        assert_eq!(chosen("scalar").unwrap().fallback, "");
         for unknown in ["pick", "picky:1"] {
             let error = chosen(unknown).err().unwrap();
             assert!(error.contains("lanes, scalar, ") && error.contains(", picky"), "{error}");

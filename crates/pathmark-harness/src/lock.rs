@@ -19,12 +19,9 @@ use std::time::Duration;
 const PATIENCE: Duration = Duration::from_secs(1);
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// Whether a lock may have several holders.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sharing {
-    /// One holder only.
     Alone,
-    /// Several holders that share it.
     Shared,
 }
 
@@ -47,7 +44,6 @@ pub fn try_lock(file: &File, path: &Path, sharing: Sharing) -> io::Result<bool> 
     }
 }
 
-/// Whether the path leads to the open file.
 pub fn leads_to(path: &Path, file: &File) -> bool {
     let same = |a: Metadata, b: Metadata| a.dev() == b.dev() && a.ino() == b.ino();
     file.metadata().and_then(|open| Ok(same(open, fs::metadata(path)?))).unwrap_or(false)
@@ -57,7 +53,6 @@ pub fn leads_to(path: &Path, file: &File) -> bool {
 #[derive(Debug)]
 pub struct Lock {
     path: PathBuf,
-    /// Locked as long as it is open.
     file: File,
 }
 
@@ -71,7 +66,6 @@ impl Lock {
         Self::new(&folder_of(&file).join(format!(".pathmark-{name}.lock")), field, path, Sharing::Alone)
     }
 
-    /// Locks an existing folder. `field` names it in an error.
     pub fn of_folder(folder: &Path, field: &str, sharing: Sharing) -> Result<Self> {
         Self::new(&folder.join(".pathmark.lock"), field, folder, sharing)
     }

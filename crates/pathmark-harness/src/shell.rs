@@ -14,6 +14,11 @@ pub fn command<S: AsRef<str>>(arguments: impl IntoIterator<Item = S>) -> String 
     arguments.into_iter().fold(program, |line, argument| format!("{line} {}", quoted(argument.as_ref())))
 }
 
+/// How to get a build that has this optional feature.
+pub fn build_with(feature: &str) -> String {
+    format!("a program built by `cargo run --release --features {feature} -- ...`")
+}
+
 /// The word as a shell reads it back, in quotes if it needs them.
 pub fn quoted(word: &str) -> String {
     let is_plain = |char: char| char.is_ascii_alphanumeric() || "-_./:=,+@%".contains(char);

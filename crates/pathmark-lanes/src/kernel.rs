@@ -23,7 +23,6 @@ pub const BUILT_IN: &[KernelEntry] = &[
     HYBRID,
 ];
 
-/// The built-in tables.
 pub const TABLES: Tables<'static> = Tables { kernels: BUILT_IN, estimators: &[] };
 
 /// Resolves a spec by the built-in tables.

@@ -34,7 +34,7 @@ fn is_same(scene: &Arc<Scene>, spec: &Spec, device: &str, pieces: &[Piece]) -> b
     // one for all.
     let effects = (device != HOST).then(|| "all".to_string());
     let on_device = Spec { kernel: device.to_string(), effects, ..spec.clone() };
-    if choose(scene, &on_device).unwrap().kernel() != device {
+    if choose(scene, &on_device).unwrap().plan.name() != device {
         return false;
     }
     let is_single = spec.precision == "f32";

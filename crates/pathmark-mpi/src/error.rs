@@ -13,18 +13,13 @@ pub enum MpiError {
     /// The file that the user named cannot be opened as a library.
     #[error("{} cannot be opened as a library: {why}", path.display())]
     NoLibrary {
-        /// The file.
         path: PathBuf,
         /// The system's error.
         why: String,
     },
     /// The library lacks a function.
     #[error("{library} is not an MPI library, or is too old: it has no {symbol}")]
-    NoSymbol {
-        library: String,
-        /// The function.
-        symbol: &'static str,
-    },
+    NoSymbol { library: String, symbol: &'static str },
     /// The library of another launcher: each process would be the only one in its own world.
     #[error(
         "the launcher started {launched} processes, but {library} knows of {known}: start them with the mpiexec of that library, or name the launcher's library"
@@ -36,10 +31,8 @@ pub enum MpiError {
         known: usize,
         library: String,
     },
-    /// A call failed.
     #[error("{call} failed with MPI's error {code}")]
     Call {
-        /// The function.
         call: &'static str,
         /// The returned error code.
         code: i32,

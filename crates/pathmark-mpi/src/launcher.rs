@@ -5,7 +5,6 @@ use std::env;
 /// The position of this process among those that a launcher started.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Launcher {
-    /// Number of processes.
     pub size: usize,
     /// Index of this process, from 0.
     pub rank: usize,

@@ -74,7 +74,6 @@ impl World {
         self.rank
     }
 
-    /// The number of processes.
     pub fn size(&self) -> usize {
         self.size
     }

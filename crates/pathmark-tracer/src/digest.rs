@@ -8,7 +8,6 @@ use std::fmt::Write;
 pub struct Fingerprint(Sha256);
 
 impl Fingerprint {
-    /// Adds bytes.
     pub fn update(&mut self, bytes: &[u8]) {
         self.0.update(bytes);
     }
@@ -24,7 +23,6 @@ impl Fingerprint {
     }
 }
 
-/// Returns the fingerprint of `text`.
 pub fn of_text(text: &str) -> String {
     let mut fingerprint = Fingerprint::default();
     fingerprint.update(text.as_bytes());

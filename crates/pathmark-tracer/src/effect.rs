@@ -12,7 +12,6 @@ const MATERIALS: u32 = 16;
 const PRIMITIVES: u32 = 6;
 
 impl Effects {
-    /// No effect.
     pub const NONE: Self = Self(0);
 
     /// The effect of the material at this index of its table.
@@ -52,7 +51,6 @@ impl Effects {
 /// The effects that a kernel is compiled for. An effect outside the set costs no branch, because the test is on a
 /// constant.
 pub trait EffectSet: Send + Sync + 'static {
-    /// The set.
     const EFFECTS: Effects;
 }
 
@@ -61,7 +59,6 @@ pub struct Entry {
     /// Its name in scene files and listings.
     pub name: &'static str,
     pub about: &'static str,
-    /// Its bit.
     pub effect: Effects,
 }
 

@@ -39,7 +39,7 @@ fn a_sample_has_the_mean_radiance_of_its_camera_rays() {
             let (estimator, sampler, filter) = ("bsdf".to_string(), sampler.to_string(), Some("box".to_string()));
             let spec = Spec { width: 1, height: 1, seed: 5, estimator, sampler, filter, ..Spec::default() };
             let spec = Spec { camera_rays: Some(rays), kernel: kernel.to_string(), ..spec };
-            assert_eq!(choose(&scene, &spec).unwrap().kernel(), kernel);
+            assert_eq!(choose(&scene, &spec).unwrap().plan.name(), kernel);
             let kernel = build(&scene, &spec).unwrap();
             let mut found = vec![0.0; weights.len()];
             for sample in 0..SAMPLES {

@@ -106,7 +106,7 @@ fn thresholds(content: Content) -> BTreeSet<usize> {
     let kernels: Vec<Spec> = ["f64", "f32"].into_iter().flat_map(kernels).collect();
     let choices = |primitives: usize| {
         let scene = scene(content, primitives);
-        kernels.iter().map(|spec| choose(&scene, spec).unwrap().accelerator()).collect::<Vec<_>>()
+        kernels.iter().map(|spec| choose(&scene, spec).unwrap().accelerator.name).collect::<Vec<_>>()
     };
     let (mut numbers, mut last, mut changes) = (BTreeSet::from(OFTEN), choices(1), vec![0; kernels.len()]);
     for primitives in 2..=MOST {

@@ -31,7 +31,7 @@ fn without_tests(counts: Counts) -> Counts {
 pub(crate) fn assert_same(scene: &Arc<Scene>, spec: &Spec, pieces: &[Piece]) {
     // Lanes choose a hierarchy only for more primitives than the scalar kernel does. Here both use the same
     // accelerator.
-    let accelerator = Some(choose(scene, spec).unwrap().accelerator().to_string());
+    let accelerator = Some(choose(scene, spec).unwrap().accelerator.name.to_string());
     let spec = &Spec { accelerator, ..spec.clone() };
     let scalar = build(scene, &Spec { kernel: "scalar".into(), ..spec.clone() }).unwrap();
     let expected: Vec<_> = pieces.iter().map(|piece| render(&*scalar, piece)).collect();
@@ -39,7 +39,7 @@ pub(crate) fn assert_same(scene: &Arc<Scene>, spec: &Spec, pieces: &[Piece]) {
         let spec = Spec { kernel: "lanes".into(), simd: Some(level.name().into()), ..spec.clone() };
         let what = format!("{}, {}, {}, {}", scene.name, spec.estimator, spec.sampler, level.name());
         let choice = choose(scene, &spec).unwrap();
-        assert_eq!((choice.kernel(), choice.simd(), choice.fallback()), ("lanes", level.name(), ""), "{what}");
+        assert_eq!((choice.plan.name(), choice.plan.simd(), choice.fallback), ("lanes", level.name(), ""), "{what}");
         let lanes = build(scene, &spec).unwrap();
         for (piece, (buffer, counts)) in pieces.iter().zip(&expected) {
             let (sums, found) = render(&*lanes, piece);
@@ -52,7 +52,7 @@ pub(crate) fn assert_same(scene: &Arc<Scene>, spec: &Spec, pieces: &[Piece]) {
 
 /// Whether lanes render a scene at all; [`unsupported_features_of_lanes_are_reported`] lists the exceptions.
 fn is_for_lanes(scene: &Scene, spec: &Spec) -> bool {
-    choose(scene, spec).unwrap().kernel() == "lanes"
+    choose(scene, spec).unwrap().plan.name() == "lanes"
 }
 
 #[test]
@@ -130,7 +130,7 @@ fn single_precision_is_the_same_everywhere_and_converges_to_the_same() {
             let what = format!("{name}, {}", single.estimator);
             let on = |level: Level, piece: &Piece| {
                 let spec = Spec { simd: Some(level.name().into()), ..single.clone() };
-                assert_eq!(choose(&scene, &spec).unwrap().precision().name(), "f32");
+                assert_eq!(choose(&scene, &spec).unwrap().plan.precision().name(), "f32");
                 let (sums, counts) = render(&*build(&scene, &spec).unwrap(), piece);
                 (sums, without_tests(counts))
             };
@@ -236,10 +236,10 @@ fn unsupported_features_of_lanes_are_reported() {
         ("cornell", Spec { epsilon: Some("1e-4".into()), ..spec() }, "epsilon"),
     ] {
         let choice = choose(&load(scene).unwrap(), &spec).unwrap();
-        assert_eq!((choice.kernel(), choice.simd(), choice.fallback()), ("scalar", "", reason), "{scene}");
+        assert_eq!((choice.plan.name(), choice.plan.simd(), choice.fallback), ("scalar", "", reason), "{scene}");
     }
     let asked = choose(&load("cornell").unwrap(), &Spec { kernel: "scalar".into(), ..spec() }).unwrap();
-    assert_eq!((asked.kernel(), asked.fallback()), ("scalar", ""));
+    assert_eq!((asked.plan.name(), asked.fallback), ("scalar", ""));
 }
 
 #[test]
@@ -262,5 +262,5 @@ fn the_scalar_kernel_has_one_precision() {
     assert!(error.to_string().contains("precision") && error.to_string().contains("f64"), "{error}");
     // Where lanes cannot render, the record states the precision that was used instead.
     let choice = choose(&load("cornell-fog").unwrap(), &Spec { precision: "f32".into(), ..Spec::default() }).unwrap();
-    assert_eq!((choice.kernel(), choice.precision().name(), choice.fallback()), ("scalar", "f64", "fog"));
+    assert_eq!((choice.plan.name(), choice.plan.precision().name(), choice.fallback), ("scalar", "f64", "fog"));
 }

@@ -1,11 +1,9 @@
 //! Corridors of mirrors that face each other.
 
+use crate::Trials;
 use crate::exact::{Bench, every_estimator, full_estimators};
 use crate::scene::Scene;
-use crate::stage::{camera, diffuse, mirror, object, plane, scene, sphere};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[Case { id: "A13", tries: "chains of mirrors: rho^k", run: chains }];
+use crate::stage::{camera, diffuse, hollow, mirror, object, plane, scene};
 
 /// Two mirrors at distance 1 and a lamp across the corridor at distance `bounces`: a ray at 45 degrees is reflected
 /// `bounces` times.
@@ -20,7 +18,7 @@ pub(crate) fn corridor(bounces: u32, albedo: f64) -> Scene {
     ])
 }
 
-fn chains(trials: &mut Trials) {
+pub(super) fn chains(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     // Nothing is random except roulette, in the corridor of 8 mirrors.
     (bench.size, bench.fewest) = ([4, 4], 64.0);
@@ -36,8 +34,7 @@ fn chains(trials: &mut Trials) {
     bench.each("8 mirrors of 0.5, by chance", &corridor(8, 0.5), full_estimators(), &[1.0 / 256.0]);
     // A depth limit in a closed mirror keeps the first terms of 1 + rho + rho^2 ..
     let polished = "{ polished = { albedo = [0.0, 0.0, 0.0], reflectivity = 0.8 } }";
-    let ball = object(&sphere([0.0; 3], 1.0), polished, [1.0; 3]);
-    let hollow = scene(&[camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), ball]);
+    let hollow = hollow(polished, [1.0; 3]);
     for depth in [0, 1, 4, 10, 32] {
         bench.max_depth = Some(depth);
         let exact = (0..=depth).rev().fold(0.0, |sum, _| 1.0 + 0.8 * sum);

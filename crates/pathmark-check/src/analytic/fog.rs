@@ -1,15 +1,8 @@
 //! Fog that absorbs, emits and scatters.
 
+use crate::Trials;
 use crate::exact::{Bench, arriving_estimators, every_estimator, mean};
 use crate::stage::{camera, diffuse, fog, object, plane, scene, sphere};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "A17", tries: "light through fog that absorbs: exp(-tau)", run: absorption },
-    Case { id: "A18", tries: "fog that absorbs and glows: 1 - exp(-tau)", run: emission },
-    Case { id: "A19", tries: "the mean way through a ball that absorbs", run: ball },
-    Case { id: "A20", tries: "fog that scatters, in a furnace", run: furnace },
-];
 
 /// A glowing plane at y = 0.
 fn lamp(emission: f64) -> String {
@@ -22,7 +15,7 @@ fn above(height: f64) -> String {
 
 /// Beer-Lambert law, down to the smallest values of f32 and f64. Nothing is random; only the width of the spot adds an
 /// error.
-fn absorption(trials: &mut Trials) {
+pub(super) fn absorption(trials: &mut Trials) {
     for (tau, exact) in [
         (1.0, 0.367_879_441_171_442_33),
         (10.0, 4.539_992_976_248_485e-5),
@@ -43,7 +36,7 @@ fn absorption(trials: &mut Trials) {
 }
 
 /// (j/sigma) (1 - exp(-tau)), also for tau so small that evaluating 1 - exp would lose half of the digits.
-fn emission(trials: &mut Trials) {
+pub(super) fn emission(trials: &mut Trials) {
     for (tau, exact) in [(1e-9, 9.999_999_995e-10), (0.01, 0.009_950_166_250_831_947), (1.0, 0.632_120_558_828_557_7)] {
         let scene = scene(&[above(1.0), fog(tau, 0.0, 1.0), lamp(0.0)]);
         for (way, film) in Bench::new(trials).films(&scene, every_estimator(), 1024.0) {
@@ -61,7 +54,7 @@ fn emission(trials: &mut Trials) {
 /// A ball transmits the share T of a parallel beam. By the cosine law, T is also the transmitted share of the light
 /// from one point of the wall to all others: T = 0.296997 for sigma R = 1. So the wall of a hollow ball full of fog
 /// has the radiance Le/(1 - rho T). The fog attenuates it on the way to the camera.
-fn ball(trials: &mut Trials) {
+pub(super) fn ball(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     let rho = 0.75;
     let wall = object(&sphere([0.0; 3], 1.0), &diffuse(rho), [1.0; 3]);
@@ -74,7 +67,7 @@ fn ball(trials: &mut Trials) {
 }
 
 /// The radiance is 1, however much the fog scatters, absorbs and emits.
-fn furnace(trials: &mut Trials) {
+pub(super) fn furnace(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     for (absorption, scattering) in [(0.0, 1.0), (0.0, 4.0), (0.5, 0.5), (2.0, 1.0)] {
         let wall = object(&sphere([0.0; 3], 1.0), &diffuse(0.25), [0.75; 3]);

@@ -1,15 +1,10 @@
 //! Form factors: the share of one surface's light that arrives at another, measured as the mean over a surface that
 //! the camera samples evenly.
 
+use crate::Trials;
 use crate::exact::{Bench, aiming_estimators, unsplit_estimators};
 use crate::stage::{diffuse, object, quad, scene, view};
-use crate::{Case, Trials};
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "A9", tries: "coaxial disks", run: coaxial_disks },
-    Case { id: "A10", tries: "faces of a cube", run: faces_of_a_cube },
-];
 
 /// Corners of the polygon that approximates a disk.
 const CORNERS: u32 = 64;
@@ -33,7 +28,7 @@ fn disk(height: f64, radius: f64, material: &str, emission: f64) -> String {
 /// (S - sqrt(S^2 - 4 (r2/r1)^2))/2 with S = 1 + (1 + (r2/h)^2)/(r1/h)^2: the share of one disk's light that arrives at
 /// another. The lower disk is white and has radius 1. The camera looks straight down at the square around it, of which
 /// the disk covers pi/4.
-fn coaxial_disks(trials: &mut Trials) {
+pub(super) fn coaxial_disks(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     bench.by_pixel = false;
     for (radius, height, exact, by_chance) in [
@@ -59,7 +54,7 @@ fn coaxial_disks(trials: &mut Trials) {
 
 /// A camera in the centre sees exactly one face, evenly. The face opposite glows red, one beside it green, all of them
 /// blue.
-fn faces_of_a_cube(trials: &mut Trials) {
+pub(super) fn faces_of_a_cube(trials: &mut Trials) {
     let face = |axis: usize, side: f64, material: &str, emission: [f64; 3]| {
         let corners = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]].map(|[u, v]| {
             let mut corner = [side; 3];

@@ -1,15 +1,9 @@
 //! Slabs of glass between two lamps.
 
+use crate::Trials;
 use crate::exact::{Bench, arriving_estimators, every_estimator, full_estimators};
 use crate::scene::Scene;
 use crate::stage::{camera, diffuse, object, plane, scene};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "A14", tries: "a lossless slab, straight through", run: lossless },
-    Case { id: "A15", tries: "a slab that absorbs", run: absorbing },
-    Case { id: "A16", tries: "a lossless slab, at a slant", run: slanted },
-];
 
 /// A slab of index 1.5 with a red lamp behind it and a green one in front, both also blue, seen at an angle to its
 /// normal.
@@ -28,7 +22,7 @@ fn slab(degrees: f64, tint: f64, fresnel: &str) -> Scene {
 
 /// T = 2n/(n^2 + 1) = 12/13 of the light behind it and R = 1/13 of the light in front, whichever formula gives the
 /// reflected share.
-fn lossless(trials: &mut Trials) {
+pub(super) fn lossless(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     // The rarest of the three events decides.
     bench.widest = [3e-2, 1e-3];
@@ -41,7 +35,7 @@ fn lossless(trials: &mut Trials) {
 /// T = (1 - R)^2 A/(1 - R^2 A^2), and R(A) likewise, if each crossing transmits A = exp(-tau). Here the surfaces
 /// absorb instead, each as much as one crossing. A path that is reflected k times inside crosses k + 1 times and meets
 /// k + 2 surfaces, so both shares have one more factor A.
-fn absorbing(trials: &mut Trials) {
+pub(super) fn absorbing(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     for (tau, transmitted, reflected, widest) in [
         (0.1, 0.834_991_978_239_793_7, 0.070_221_279_426_849_32, [3e-2, 1e-3]),
@@ -61,7 +55,7 @@ fn absorbing(trials: &mut Trials) {
 
 /// Each surface uses the mean of both polarisations, as renderers do. Light that stayed polarised between the surfaces
 /// would give 0.9073, 0.8481 and 0.4585.
-fn slanted(trials: &mut Trials) {
+pub(super) fn slanted(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     for (degrees, exact) in
         [(45.0, 0.904_326_791_458_889), (60.0, 0.836_232_462_710_168), (80.0, 0.441_229_173_374_367)]

@@ -1,16 +1,9 @@
-//! Area lights over planes, parallel plates, and half a sky.
+//! Area lights, point lights and skies over planes, and parallel plates.
 
-use crate::exact::{Bench, aiming_estimators, arriving_estimators, unsplit_estimators};
-use crate::stage::{camera, diffuse, object, plane, quad, scene, sphere};
-use crate::{Case, Trials};
-use std::f64::consts::FRAC_1_PI;
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "A6", tries: "a spherical light over a plane", run: sphere_over_a_plane },
-    Case { id: "A8", tries: "a square light over a plane", run: square_over_a_plane },
-    Case { id: "A11", tries: "parallel plates", run: parallel_plates },
-    Case { id: "A12", tries: "a ball under half a sky", run: ball_under_half_a_sky },
-];
+use crate::Trials;
+use crate::exact::{Bench, aiming_estimators, arriving_estimators, every_estimator, unsplit_estimators};
+use crate::stage::{camera, diffuse, object, plane, point_light, quad, scene, sphere};
+use std::f64::consts::{FRAC_1_PI, PI};
 
 fn floor(albedo: f64) -> String {
     object(&plane([0.0; 3], [0.0, 1.0, 0.0]), &diffuse(albedo), [0.0; 3])
@@ -18,7 +11,7 @@ fn floor(albedo: f64) -> String {
 
 /// rho Le (a/d)^2 cos, exact at any distance while the whole light is above the horizon. Where at most one path in
 /// fifty hits the light, only the estimators that aim at it are checked.
-fn sphere_over_a_plane(trials: &mut Trials) {
+pub(super) fn sphere_over_a_plane(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     for (radius, height, x, exact) in [
         (0.5, 2.0, 0.0, 0.031_25),
@@ -46,7 +39,7 @@ fn sphere_over_a_plane(trials: &mut Trials) {
 }
 
 /// rho E/pi, with E by Lambert's formula for polygons.
-fn square_over_a_plane(trials: &mut Trials) {
+pub(super) fn square_over_a_plane(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     let light = |[x, z]: [f64; 2], y: f64| {
         let corners = [[-x, y, -z], [x, y, -z], [x, y, z], [-x, y, z]];
@@ -71,7 +64,7 @@ fn square_over_a_plane(trials: &mut Trials) {
 }
 
 /// Le/(1 - r1 r2) and r2 Le/(1 - r1 r2).
-fn parallel_plates(trials: &mut Trials) {
+pub(super) fn parallel_plates(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     let lower = object(&plane([0.0; 3], [0.0, 1.0, 0.0]), &diffuse(0.5), [1.0; 3]);
     let upper = object(&plane([0.0, 1.0, 0.0], [0.0, -1.0, 0.0]), &diffuse(0.8), [0.0; 3]);
@@ -82,7 +75,7 @@ fn parallel_plates(trials: &mut Trials) {
 }
 
 /// rho (1 + cos beta)/2, where beta is the angle between the ball's normal and the upward direction.
-fn ball_under_half_a_sky(trials: &mut Trials) {
+pub(super) fn ball_under_half_a_sky(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     let earth = object(&plane([0.0, -5.0, 0.0], [0.0, 1.0, 0.0]), &diffuse(0.0), [0.0; 3]);
     let ball = object(&sphere([0.0; 3], 1.0), &diffuse(0.5), [0.0; 3]);
@@ -94,5 +87,69 @@ fn ball_under_half_a_sky(trials: &mut Trials) {
         let scene = scene(&[background, at, earth.clone(), ball.clone()]);
         bench.widest = if sky == 0.25 { [2e-2, 1e-3] } else { [1e-2, 1e-3] };
         bench.each(&format!("beta {degrees}"), &scene, unsplit_estimators(), &[0.5 * sky]);
+    }
+}
+
+pub(super) fn light_over_a_plane(trials: &mut Trials) {
+    let mut bench = Bench::new(trials);
+    let floor = object(&plane([0.0; 3], [0.0, 1.0, 0.0]), &diffuse(0.5), [0.0; 3]);
+    for (x, exact) in [(0.0, 0.159_154_943_091_895_34), (1.0, 0.056_269_769_759_819_14)] {
+        let at = camera([0.0, 3.0, 1.0], [x, 0.0, 0.0]);
+        let scene = scene(&[at, point_light([0.0, 1.0, 0.0], 1.0), floor.clone()]);
+        bench.each(&format!("x {x}"), &scene, every_estimator(), &[exact]);
+    }
+    // Doubling the distance leaves a quarter of the light, from near to far.
+    for height in [0.25, 0.5, 8.0, 512.0] {
+        let at = camera([0.0, 0.1, 0.1], [0.0; 3]);
+        let scene = scene(&[at, point_light([0.0, height, 0.0], 1.0), floor.clone()]);
+        let exact = 0.5 * FRAC_1_PI / (height * height);
+        bench.each(&format!("height {height}"), &scene, every_estimator(), &[exact]);
+    }
+    // Lights add up, each is occluded separately, and a light below the floor does not light its upper side.
+    let parts = [
+        camera([0.0, 0.5, 0.5], [0.0; 3]),
+        point_light([0.0, 1.0, 0.0], 1.0),
+        point_light([0.0, 2.0, 0.0], 2.0),
+        point_light([2.0, 2.0, 0.0], 1000.0), // behind the ball
+        point_light([0.0, -1.0, 0.0], 1000.0),
+        floor,
+        object(&sphere([1.0, 1.0, 0.0], 0.25), &diffuse(0.0), [0.0; 3]),
+    ];
+    bench.each("several", &scene(&parts), every_estimator(), &[0.5 / PI * (1.0 + 2.0 / 4.0)]);
+}
+
+/// Cosines of the viewing angle.
+const COSINES: [f64; 6] = [1.0, 0.75, 0.5, 0.25, 0.1, 0.05];
+
+/// Albedo of a rough surface with F = 1, by roughness: single scattering by GGX with height-correlated shadowing,
+/// computed to 1e-6 by quadrature; the last row at normal incidence is 1 - ln 2.
+const ALBEDO: [(f64, [f64; 6]); 7] = [
+    (0.01, [0.999_899, 0.999_858, 0.999_742, 0.999_092, 0.994_124, 0.976_208]),
+    (0.05, [0.997_296, 0.996_138, 0.992_716, 0.974_512, 0.911_347, 0.889_894]),
+    (0.1, [0.988_304, 0.983_144, 0.969_205, 0.921_623, 0.883_455, 0.911_763]),
+    (0.25, [0.915_812, 0.891_533, 0.857_263, 0.840_082, 0.891_622, 0.933_132]),
+    (0.5, [0.687_849, 0.682_083, 0.698_251, 0.765_203, 0.860_105, 0.912_548]),
+    (0.75, [0.463_917, 0.501_411, 0.564_623, 0.680_248, 0.810_714, 0.880_610]),
+    (1.0, [0.306_852_819_440_054_7, 0.364_527, 0.450_694, 0.597_641, 0.760_211, 0.847_774]),
+];
+
+/// A metal plane, seen at several angles.
+pub(super) fn metal_under_a_sky(trials: &mut Trials) {
+    let fewest = trials.times(8192, 10_000_000) as f64;
+    let mut bench = Bench::new(trials);
+    bench.fewest = fewest;
+    for (alpha, row) in ALBEDO {
+        // Smooth metal loses only the few reflections that leave below the horizon.
+        bench.rare = alpha < 0.1;
+        let metal = format!("{{ conductor = {{ alpha = {alpha:?}, f0 = [1.0, 1.0, 1.0] }} }}");
+        for (cos, exact) in COSINES.into_iter().zip(row) {
+            let sin = f64::sqrt(1.0 - cos * cos);
+            let scene = scene(&[
+                "background = [1.0, 1.0, 1.0]\n".to_string(),
+                camera([10.0 * sin, 10.0 * cos, 0.0], [0.0; 3]),
+                object(&plane([0.0; 3], [0.0, 1.0, 0.0]), &metal, [0.0; 3]),
+            ]);
+            bench.each(&format!("alpha {alpha}, cos {cos}"), &scene, unsplit_estimators(), &[exact]);
+        }
     }
 }

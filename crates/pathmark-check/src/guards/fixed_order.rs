@@ -1,6 +1,6 @@
 //! Sums in a fixed order: samples are added along a tree, whichever block is finished first.
 
-use super::{Guard, Measured, Variant};
+use super::{Guard, Measured, variant};
 use crate::film::{Assembly, Bounds, PixelSum, SAMPLE_BLOCK, SampleSum, TileBuffer};
 use crate::math::Rgb;
 use crate::random::Random;
@@ -10,12 +10,8 @@ pub(super) const GUARD: Guard = Guard {
     name: "one image from all schedules",
     error: "share of 200 orders of arrival whose sum of 4096 samples differs in a bit from the first's",
     operation: "256 blocks of 16 samples of a pixel put together",
-    with: Variant { name: "along a tree, as a film", error: || error(as_a_film), work: |count| work(count, as_a_film) },
-    without: Variant {
-        name: "as they arrive",
-        error: || error(as_they_arrive),
-        work: |count| work(count, as_they_arrive),
-    },
+    with: variant!("along a tree, as a film", error, work, as_a_film),
+    without: variant!("as they arrive", error, work, as_they_arrive),
 };
 
 const BLOCKS: u32 = 256;

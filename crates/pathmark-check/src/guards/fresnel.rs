@@ -1,6 +1,6 @@
 //! Exact Fresnel equations: Schlick's polynomial is off by up to 0.036.
 
-use super::{Guard, Measured, Variant};
+use super::{Guard, Measured, variant};
 use crate::math::fresnel_dielectric;
 use crate::shading::fresnel::oracle;
 use crate::shading::unguarded::schlick;
@@ -9,12 +9,8 @@ pub(super) const GUARD: Guard = Guard {
     name: "exact Fresnel",
     error: "mean error of glass's reflectance over 202 angles from either side",
     operation: "a reflectance",
-    with: Variant {
-        name: "Fresnel",
-        error: || error(fresnel_dielectric),
-        work: |count| work(count, fresnel_dielectric),
-    },
-    without: Variant { name: "Schlick", error: || error(schlick), work: |count| work(count, schlick) },
+    with: variant!("Fresnel", error, work, fresnel_dielectric),
+    without: variant!("Schlick", error, work, schlick),
 };
 
 fn error(reflectance: fn(f64, f64) -> f64) -> Measured {

@@ -10,19 +10,17 @@ mod epsilon;
 mod fixed_order;
 mod fresnel;
 mod keys;
-mod measured;
 mod precision;
 mod report_guards;
-mod self_hits;
 mod sphere_formula;
 mod sums;
 mod visible_normals;
 mod watertight;
 
-pub use measured::Measured;
-
+use crate::analysis::mean::t_interval;
 use crate::guard_prices::{LEVEL, PriceRow};
 use crate::measure::{Interleaved, interleaved};
+use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 
 /// All guards, in the order in which a path meets them.
@@ -30,8 +28,8 @@ pub static GUARDS: &[Guard] = &[
     precision::GUARD,
     sphere_formula::GUARD,
     watertight::GUARD,
-    epsilon::GUARD,
-    self_hits::GUARD,
+    epsilon::SMALL,
+    epsilon::HUGE,
     fresnel::GUARD,
     visible_normals::GUARD,
     report_guards::GUARD,
@@ -52,7 +50,6 @@ pub struct Guard {
     pub operation: &'static str,
     /// The program's method.
     pub with: Variant,
-    /// The simpler alternative.
     pub without: Variant,
 }
 
@@ -64,6 +61,14 @@ pub struct Variant {
     /// Runs so many operations. Returns a number that depends on all of them, so that the compiler cannot omit any.
     pub work: fn(u64) -> f64,
 }
+
+/// A method whose error and work are measured by a function of each kind.
+macro_rules! variant {
+    ($name:literal, $error:ident, $work:ident, $method:expr) => {
+        $crate::guards::Variant { name: $name, error: || $error($method), work: |count| $work(count, $method) }
+    };
+}
+use variant;
 
 impl Guard {
     /// Measures errors and times.
@@ -96,6 +101,40 @@ impl Guard {
     }
 }
 
+/// A number with its 95 % confidence interval.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    pub value: f64,
+    pub low: f64,
+    pub high: f64,
+}
+
+/// Normal quantile of a two-sided interval of 95 %.
+const Z: f64 = 1.959_963_984_540_054;
+
+impl Measured {
+    /// The mean of some numbers. Equal numbers give an interval of width zero.
+    fn mean(values: &[f64]) -> Self {
+        let exactly = |value| Self { value, low: value, high: value };
+        t_interval(values, LEVEL).map_or_else(
+            || exactly(values.first().copied().unwrap_or(f64::NAN)),
+            |mean| Self { value: mean.value, low: mean.interval.low.max(0.0), high: mean.interval.high },
+        )
+    }
+
+    /// The share of `count` in `all`, with the interval of E. B. Wilson, "Probable inference, the law of succession,
+    /// and statistical inference", Journal of the American Statistical Association 22 (1927). A count of zero has a
+    /// positive upper end there.
+    fn share(count: u64, all: u64) -> Self {
+        let (n, value) = (all as f64, count as f64 / all as f64);
+        let scale = 1.0 + Z * Z / n;
+        let centre = (value + Z * Z / (2.0 * n)) / scale;
+        let half_width = Z / scale * (value * (1.0 - value) / n + Z * Z / (4.0 * n * n)).sqrt();
+        let low = if count == 0 { 0.0 } else { centre - half_width };
+        Self { value, low, high: if count == all { 1.0 } else { centre + half_width } }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -124,5 +163,22 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn shares() {
+        // Wilson's interval from tables: 0.0552 to 0.1744 for 10 in 100, 0 to 0.0370 for none in 100.
+        let ten = Measured::share(10, 100);
+        assert!((ten.low - 0.0552).abs() < 1e-4 && (ten.high - 0.1744).abs() < 1e-4, "{ten:?}");
+        let none = Measured::share(0, 100);
+        assert!(none.low == 0.0 && (none.high - 0.0370).abs() < 1e-4, "{none:?}");
+    }
+
+    #[test]
+    fn means() {
+        assert_eq!(Measured::mean(&[2.0, 2.0]), Measured { value: 2.0, low: 2.0, high: 2.0 });
+        // Student's t for 2 degrees of freedom is 4.3027; s = 1.
+        let mean = Measured::mean(&[4.0, 5.0, 6.0]);
+        assert!((mean.high - (5.0 + 4.3027 / 3.0_f64.sqrt())).abs() < 1e-3, "{mean:?}");
     }
 }

@@ -5,7 +5,7 @@ use crate::math::{Vec3, first_root, roots};
 use crate::random::Random;
 use crate::sphere::bulk::aimed;
 use crate::sphere::exact::Exact;
-use crate::sphere::unguarded::{smallpt_first_root, smallpt_roots};
+use crate::sphere::formulas::{smallpt_first_root, smallpt_roots};
 
 pub(super) const GUARD: Guard = Guard {
     name: "sphere formula",

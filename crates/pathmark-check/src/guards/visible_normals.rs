@@ -1,6 +1,6 @@
 //! Sampling of visible microfacet normals: cosine-distributed directions seldom find the lobe.
 
-use super::{Guard, Measured, Variant};
+use super::{Guard, Measured, variant};
 use crate::material::Ggx;
 use crate::shading::unguarded::{Moments, albedo_by_cosines, albedo_by_visible_normals};
 
@@ -8,16 +8,8 @@ pub(super) const GUARD: Guard = Guard {
     name: "visible normals",
     error: "standard deviation of a sample of what GGX of α = 0.1 reflects of an even light, mean over ten angles",
     operation: "a sample",
-    with: Variant {
-        name: "visible normals",
-        error: || error(albedo_by_visible_normals),
-        work: |count| work(count, albedo_by_visible_normals),
-    },
-    without: Variant {
-        name: "cosine",
-        error: || error(albedo_by_cosines),
-        work: |count| work(count, albedo_by_cosines),
-    },
+    with: variant!("visible normals", error, work, albedo_by_visible_normals),
+    without: variant!("cosine", error, work, albedo_by_cosines),
 };
 
 type Estimate = fn(Ggx, f64, u64) -> Moments;

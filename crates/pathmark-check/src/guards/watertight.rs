@@ -1,22 +1,18 @@
 //! The watertight triangle test: neighbours agree about a ray through their shared edge.
 
-use super::{Guard, Measured, Variant};
+use super::{Guard, Measured, variant};
 use crate::math::{Ray, Vec3};
 use crate::meshes::icosphere;
 use crate::random::Random;
 use crate::scene::{Primitive, Triangle};
-use crate::triangle::unguarded::moller_trumbore;
+use crate::triangle::single::moller_trumbore;
 
 pub(super) const GUARD: Guard = Guard {
     name: "watertight triangles",
     error: "share of rays at shared edges that pass between the triangles of a closed mesh",
     operation: "a ray against 80 triangles",
-    with: Variant {
-        name: "Woop, Benthin and Wald",
-        error: || error(watertight),
-        work: |count| work(count, watertight),
-    },
-    without: Variant { name: "Möller and Trumbore", error: || error(plain), work: |count| work(count, plain) },
+    with: variant!("Woop, Benthin and Wald", error, work, watertight),
+    without: variant!("Möller and Trumbore", error, work, plain),
 };
 
 fn mesh() -> Vec<Triangle> {

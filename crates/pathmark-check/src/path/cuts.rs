@@ -1,31 +1,21 @@
 //! Bias of depth limits and clamps, and the warnings about it.
 
+use crate::Trials;
 use crate::estimator::ESTIMATORS;
-use crate::exact::{Bench, arriving_estimators, critical, full_estimators, mean, run};
-use crate::kernel::{KERNELS, Spec};
-use crate::measure::{Measured, Record, Settings, Setup, Warning};
-use crate::scene::{Scene, load};
-use crate::stage::{camera, diffuse, object, scene, sphere};
-use crate::{Case, Trials};
+use crate::exact::{Bench, arriving_estimators, critical, full_estimators, mean, run, with_kernels};
+use crate::kernel::Spec;
+use crate::measure::{Record, Settings, Setup, Warning};
+use crate::scene::load;
+use crate::stage::{diffuse, hollow};
 use std::sync::Arc;
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "P08", tries: "cut after D vertices: Le (1 - rho^D)/(1 - rho), and said", run: depth },
-    Case { id: "P09", tries: "samples clamped to 1: (1 - rho^10)/(1 - rho), and said", run: clamp },
-];
-
-fn hollow(albedo: f64, emission: f64) -> Scene {
-    let wall = object(&sphere([0.0; 3], 1.0), &diffuse(albedo), [emission; 3]);
-    scene(&[camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), wall])
-}
 
 /// The cut removes 59.0 % of the light after 5 vertices of albedo 0.9, 0.515 % after 50, and 60.6 % after 500 of
 /// albedo 0.999.
-fn depth(trials: &mut Trials) {
+pub(super) fn depth(trials: &mut Trials) {
     for (rho, vertices, missing) in
         [(0.9, 1, 0.9), (0.9, 5, 0.590_49), (0.9, 50, 0.005_153_775_207), (0.999, 500, 0.606_378_944_861)]
     {
-        let scene = hollow(rho, 1.0);
+        let scene = hollow(&diffuse(rho), [1.0; 3]);
         let what = format!("rho {rho}, {vertices} vertices");
         let mut bench = Bench::new(trials);
         bench.max_depth = Some(vertices - 1);
@@ -53,7 +43,7 @@ fn on_record(trials: &mut Trials) {
             let outcome = setup.run(None).expect("a render");
             let is_warned = outcome.warnings.contains(&Warning::Biased);
             let is_cut = outcome.counts.truncated > 0;
-            let record = Record::new(&setup, &outcome, Measured::default());
+            let record = Record::new(&setup, &outcome);
             let depth = max_depth.or(entry.max_depth);
             trials.same(
                 format!("{max_depth:?}, {}: depth on record, biased, warned, cut", entry.name),
@@ -67,10 +57,10 @@ fn on_record(trials: &mut Trials) {
 /// With roulette from the first vertex on, a sample is a tenth of the number of vertices, G/10. Clamped at 1 its mean
 /// is (1 - 0.9^10)/(1 - 0.9)/10 = 0.6513215599 instead of 1; clamped at 2, it is (1 - 0.9^20) = 0.8784233454. With one
 /// sample in each subpixel, both clamps cut the same.
-fn clamp(trials: &mut Trials) {
-    let scene = hollow(0.9, 0.1);
+pub(super) fn clamp(trials: &mut Trials) {
+    let scene = hollow(&diffuse(0.9), [0.1; 3]);
     let side = trials.times(128, 2048) as u32;
-    for (estimator, kernel) in full_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name))) {
+    for (estimator, kernel) in with_kernels(full_estimators()) {
         let arrives = arriving_estimators().any(|name| name == estimator);
         let is_one_path = ESTIMATORS.iter().any(|entry| entry.name == estimator && entry.is_one_path);
         for clamp in [None, Some("subpixel"), Some("recursion"), Some("subpixel:2"), Some("recursion:2")] {

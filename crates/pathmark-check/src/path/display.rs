@@ -1,13 +1,8 @@
 //! Conversion of radiance to displayed values.
 
+use crate::Trials;
 use crate::error::Error;
 use crate::image_io::{self, FORMATS, Image, auto_exposed, tone_map};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "P17", tries: "one bright pixel changes no other", run: firefly },
-    Case { id: "P19", tries: "gamma and rounding at the edges", run: rounding },
-];
 
 /// An image of values in [0, 1].
 fn ramp() -> Image {
@@ -20,7 +15,7 @@ fn ramp() -> Image {
 
 /// Report C divides by the largest value of the image, so one sample darkens all pixels. Here the user must ask for
 /// this, and it changes a copy only.
-fn firefly(trials: &mut Trials) {
+pub(super) fn firefly(trials: &mut Trials) {
     const AT: usize = 77;
     let plain = ramp();
     let mut bright = plain.clone();
@@ -45,7 +40,7 @@ fn firefly(trials: &mut Trials) {
 
 /// The byte changes at the linear value that displays as (k + 1/2)/255. Values outside the range are clamped. NaN is
 /// refused and leaves no file.
-fn rounding(trials: &mut Trials) {
+pub(super) fn rounding(trials: &mut Trials) {
     let up = f64::from_bits(1.0_f64.to_bits() + 1);
     for (linear, expected) in [
         (-0.0, Some(0)),

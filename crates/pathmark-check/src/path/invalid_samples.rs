@@ -1,5 +1,6 @@
 //! Invalid radiance: NaN, infinite, negative.
 
+use crate::Trials;
 use crate::effect::EffectSet;
 use crate::estimator::{AnyEstimator, ESTIMATORS, Estimator, Options, Probe, any_estimator};
 use crate::film::DECOMPOSITIONS;
@@ -9,14 +10,7 @@ use crate::measure::{InvalidSample, Outcome, Settings, Setup};
 use crate::sampling::{SampleKey, Sampler};
 use crate::scene::{Scene, load};
 use crate::strategy::STRATEGIES;
-use crate::{Case, Trials};
 use std::sync::Arc;
-
-pub(super) const CASES: &[Case] = &[Case {
-    id: "P10",
-    tries: "NaN, infinite and negative samples are left out, counted and told by address",
-    run: injected,
-}];
 
 const WIDTH: u32 = 16;
 const HEIGHT: u32 = 12;
@@ -59,7 +53,7 @@ fn render(settings: Settings, instead: f64) -> Outcome {
     setup.with("spoilt", Spoilt { estimator, instead }).expect("a kernel").run(None).expect("an image")
 }
 
-fn injected(trials: &mut Trials) {
+pub(super) fn injected(trials: &mut Trials) {
     let all = (0..HEIGHT).flat_map(|y| (0..WIDTH).flat_map(move |x| (0..SPP).map(move |sample| (y, x, sample))));
     let spoilt: Vec<InvalidSample> = all
         .filter(|(y, x, sample)| is_spoilt(y * WIDTH + x, *sample))

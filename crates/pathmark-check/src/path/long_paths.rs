@@ -1,26 +1,16 @@
 //! Paths that never end, or end only after thousands of bounces.
 
+use crate::Trials;
 use crate::analytic::corridors::corridor;
 use crate::estimator::MAX_BOUNCES;
-use crate::exact::{arriving_estimators, full_estimators, run};
+use crate::exact::{arriving_estimators, full_estimators, run, with_kernels};
 use crate::film::{Bounds, Piece, PixelSum, TileBuffer};
-use crate::kernel::{self, Counts, KERNELS, Spec};
+use crate::kernel::{self, Counts, Spec};
 use crate::measure::{Settings, Warning};
 use crate::scene::Scene;
-use crate::stage::{camera, diffuse, mirror, object, scene, sphere};
-use crate::{Case, Trials};
+use crate::stage::{diffuse, hollow, mirror};
 use std::sync::Arc;
 use std::thread;
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "P01", tries: "a closed sphere that loses nothing", run: endless },
-    Case { id: "P02", tries: "ten thousand bounces on a stack of 128 KiB", run: ten_thousand },
-    Case { id: "P03", tries: "throughputs down to the smallest number", run: underflow },
-];
-
-fn hollow(material: &str, emission: [f64; 3]) -> Scene {
-    scene(&[camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), object(&sphere([0.0; 3], 1.0), material, emission)])
-}
 
 /// One pixel's samples, rendered in a thread with a small stack; the default in Rust is 2 MiB.
 fn pixel(scene: &Scene, spec: Spec, spp: u32) -> (PixelSum, Counts) {
@@ -36,11 +26,11 @@ fn pixel(scene: &Scene, spec: Spec, spp: u32) -> (PixelSum, Counts) {
 }
 
 /// The loop ends after 65 536 vertices, and the cut is counted and reported. Each vertex has added its emission.
-fn endless(trials: &mut Trials) {
+pub(super) fn endless(trials: &mut Trials) {
     for (material, name) in [(mirror(1.0), "mirror"), (diffuse(1.0), "matte")] {
         for emission in [0.0, 1.0] {
             let scene = hollow(&material, [emission; 3]);
-            for (estimator, kernel) in full_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name))) {
+            for (estimator, kernel) in with_kernels(full_estimators()) {
                 let spec =
                     Spec { width: 1, height: 1, estimator: estimator.into(), kernel: kernel.into(), ..Spec::default() };
                 let outcome = run(&scene, Settings { spp: 4, spec, threads: 1, ..Settings::default() });
@@ -62,9 +52,9 @@ fn endless(trials: &mut Trials) {
 }
 
 /// 0.999^10000, with a relative tolerance of 1e-11.
-fn ten_thousand(trials: &mut Trials) {
+pub(super) fn ten_thousand(trials: &mut Trials) {
     let scene = corridor(10_000, 0.999);
-    for (estimator, kernel) in full_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name))) {
+    for (estimator, kernel) in with_kernels(full_estimators()) {
         let roulette = Some("never".to_string());
         let spec = Spec { estimator: estimator.into(), kernel: kernel.into(), roulette, ..Spec::default() };
         let (sum, counts) = pixel(&scene, spec, 8);
@@ -75,7 +65,7 @@ fn ten_thousand(trials: &mut Trials) {
     }
     // Roulette ends these paths; some of them are very long.
     let furnace = hollow(&diffuse(0.999), [1.0; 3]);
-    for (estimator, kernel) in full_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name))) {
+    for (estimator, kernel) in with_kernels(full_estimators()) {
         let spec = Spec { estimator: estimator.into(), kernel: kernel.into(), ..Spec::default() };
         let (_, counts) = pixel(&furnace, spec, 200);
         let is_long = counts.rays > 300 * counts.paths && counts.escaped + counts.invalid + counts.truncated == 0;
@@ -87,8 +77,8 @@ fn ten_thousand(trials: &mut Trials) {
 /// bounce ends the path: 1023 rays. An albedo of 0.9 takes 6724 rays. Without this rule the path would never end: 0.9
 /// times 4 units of the smallest number rounds to 4 units. The sum of the series is right to its last term, also where
 /// another channel loses nothing and keeps the path alive.
-fn underflow(trials: &mut Trials) {
-    for (estimator, kernel) in arriving_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name))) {
+pub(super) fn underflow(trials: &mut Trials) {
+    for (estimator, kernel) in with_kernels(arriving_estimators()) {
         let what = format!("{estimator}, {kernel}");
         let roulette = Some("never".to_string());
         let spec = Spec { estimator: estimator.into(), kernel: kernel.into(), roulette, ..Spec::default() };

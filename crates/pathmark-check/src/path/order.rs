@@ -1,20 +1,19 @@
-//! Independence of the order of samples and pieces.
+//! Equal bits whatever the order of samples and pieces, and on every machine.
 
 use super::unguarded::f64_sum;
+use crate::Trials;
+use crate::exact::run;
 use crate::film::{Assembly, Bounds, DECOMPOSITIONS, SAMPLE_BLOCK, SampleSum, TileBuffer};
 use crate::kernel::{KERNELS, Spec};
-use crate::math::Rgb;
-use crate::measure::{Settings, Setup};
+use crate::math::{Rgb, sin_cos_turns};
+use crate::measure::Settings;
+use crate::sampling::SAMPLERS;
 use crate::scene::load;
 use crate::strategy::{STRATEGIES, Workers};
-use crate::{Case, Trials};
 use rand::Rng;
 use rand_pcg::Pcg64Mcg;
 use std::collections::BTreeSet;
-use std::f64::consts::TAU;
-use std::sync::Arc;
-
-pub(super) const CASES: &[Case] = &[Case { id: "P14", tries: "samples and pieces in any order", run: orders }];
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 fn uniform(random: &mut Pcg64Mcg) -> f64 {
     ((random.next_u64() >> 11) as f64 + 0.5) / 9_007_199_254_740_992.0
@@ -33,7 +32,7 @@ fn shuffle<T>(values: &mut [T], random: &mut Pcg64Mcg) {
 }
 
 /// 4096 log-normal samples in 1000 orders: running sums give dozens of results, pieces of a film give one.
-fn orders(trials: &mut Trials) {
+pub(super) fn orders(trials: &mut Trials) {
     const BOUNDS: Bounds = Bounds { x0: 0, y0: 0, x1: 1, y1: 1 };
     let mut random = Pcg64Mcg::new(14);
     let values: Vec<f64> = (0..4096).map(|_| log_normal(&mut random)).collect();
@@ -71,17 +70,14 @@ fn orders(trials: &mut Trials) {
 
 /// The image is the same for every strategy, decomposition and number of threads.
 fn images(trials: &mut Trials) {
-    let scene = Arc::new(load("cornell").expect("a shipped scene"));
+    let scene = load("cornell").expect("a shipped scene");
     // Three subtrees of 32, 16 and 4 samples, so that a wrong order of addition shows.
     let small = |kernel: &str| {
         let spec = Spec { width: 9, height: 7, seed: 7, kernel: kernel.to_string(), ..Spec::default() };
         Settings { spp: 52, spec, decomposition: "rows".into(), strategy: "serial".into(), ..Settings::default() }
     };
     for kernel in KERNELS {
-        let checksum = |settings| {
-            let setup = Setup::for_scene(Arc::clone(&scene), settings).expect("settings that fit");
-            setup.run(None).expect("a render").checksum
-        };
+        let checksum = |settings| run(&scene, settings).checksum;
         let expected = checksum(small(kernel.name));
         for strategy in STRATEGIES {
             // One thread is enough for strategies that ignore the number of threads.
@@ -101,4 +97,48 @@ fn images(trials: &mut Trials) {
             trials.holds(format!("{}, {}", strategy.name, kernel.name), "the same", found, others.is_empty());
         }
     }
+}
+
+/// The checksum of [`crate::sampling::Entry::checksum`]'s image by smallpt's estimator, which splits paths.
+const SMALLPT: (&str, &str, &str) = ("smallpt", "independent", "9e8357a5a669ae5d");
+
+pub(super) fn bits(trials: &mut Trials) {
+    let scene = load("cornell").expect("a shipped scene");
+    let by_bsdf = SAMPLERS.iter().filter_map(|entry| Some(("bsdf", entry.name, entry.checksum?)));
+    for (estimator, sampler, expected) in by_bsdf.chain([SMALLPT]) {
+        let (estimator, sampler) = (estimator.to_string(), sampler.to_string());
+        let what = format!("cornell, {estimator}, {sampler}");
+        let spec = Spec { width: 96, height: 64, seed: 7, estimator, sampler, ..Spec::default() };
+        let settings = Settings { spp: 8, spec, ..Settings::default() };
+        trials.same(what, Some(expected.to_string()), run(&scene, settings).checksum);
+    }
+    own_functions(trials);
+}
+
+/// Sine and cosine are the program's own. Quarter turns are exact. An eighth of a turn is within 2.3e-16; against
+/// libm, all angles up to it are within 3.5e-16.
+fn own_functions(trials: &mut Trials) {
+    for (turns, expected) in
+        [(0.0, (0.0, 1.0)), (0.25, (1.0, 0.0)), (0.5, (0.0, -1.0)), (0.75, (-1.0, 0.0)), (1.0, (0.0, 1.0))]
+    {
+        let (sin, cos) = sin_cos_turns(turns);
+        trials.same(format!("{turns} turns"), expected, (sin + 0.0, cos + 0.0));
+    }
+    let (sin, cos) = sin_cos_turns(0.125);
+    trials.close("an eighth of a turn: sine", FRAC_1_SQRT_2, sin, 2.3e-16);
+    trials.close("an eighth of a turn: cosine", FRAC_1_SQRT_2, cos, 2.3e-16);
+    let steps = trials.times(100_000, 10_000_000);
+    let mut worst = 0.0_f64;
+    for k in 0..=steps {
+        let turns = 0.125 * k as f64 / steps as f64;
+        let (sin, cos) = sin_cos_turns(turns);
+        let (exact_sin, exact_cos) = (libm::sin(TAU * turns), libm::cos(TAU * turns));
+        worst = worst.max((sin - exact_sin).abs()).max((cos - exact_cos).abs());
+    }
+    trials.holds(
+        "against libm up to an eighth of a turn",
+        "at most 3.5e-16",
+        format_args!("{worst:.1e}"),
+        worst <= 3.5e-16,
+    );
 }

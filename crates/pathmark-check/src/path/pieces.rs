@@ -1,13 +1,8 @@
 //! Films divided into pieces: every pixel is rendered exactly once.
 
+use crate::Trials;
 use crate::film::{DECOMPOSITIONS, Decomposition, Plan};
-use crate::{Case, Trials};
 use std::collections::BTreeSet;
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "P15", tries: "every pixel in one piece, whatever is left over", run: cover },
-    Case { id: "P16", tries: "report D's grids", run: grids },
-];
 
 const SIDES: [u32; 9] = [1, 2, 3, 7, 17, 63, 64, 65, 1023];
 /// Numbers of parts.
@@ -35,7 +30,7 @@ fn wrong(plan: &Plan, width: u32, height: u32) -> u64 {
 
 /// Tries every decomposition of the table, and each number of parts. Report B's 784 rows on 20 threads omitted the
 /// last four.
-fn cover(trials: &mut Trials) {
+pub(super) fn cover(trials: &mut Trials) {
     let examples = DECOMPOSITIONS.iter().map(|entry| entry.example.to_string());
     let parts = PARTS.iter().flat_map(|parts| [format!("bands:{parts}"), format!("grid:{parts}")]);
     let tiles = ["tiles:5x3:hilbert", "tiles:16x16:spiral", "tiles:7x5:cost", "tiles:1x1"].map(String::from);
@@ -59,7 +54,7 @@ fn cover(trials: &mut Trials) {
 }
 
 /// 815 pixels are cut at 204, 408 and 612. The number of cells need not be a square.
-fn grids(trials: &mut Trials) {
+pub(super) fn grids(trials: &mut Trials) {
     let starts = |plan: &Plan| -> [BTreeSet<u32>; 2] {
         let of = |start: fn(&crate::film::Piece) -> u32| plan.pieces().iter().map(start).collect();
         [of(|piece| piece.bounds.x0), of(|piece| piece.bounds.y0)]

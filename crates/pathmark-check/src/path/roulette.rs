@@ -1,26 +1,18 @@
 //! Russian roulette: when it ends paths, that it keeps the mean, and the variance that it adds.
 
+use crate::Trials;
 use crate::estimator::{ESTIMATORS, Options, Roulette, any_estimator};
-use crate::exact::{Bench, arriving_estimators, critical, full_estimators, run};
-use crate::film::Film;
-use crate::kernel::{KERNELS, Spec};
+use crate::exact::{Bench, arriving_estimators, critical, full_estimators, run, with_kernels};
+use crate::kernel::Spec;
 use crate::math::{Ray, Vec3};
 use crate::measure::Settings;
+use crate::rendering::Moments;
 use crate::sampling::{Address, SampleKey, Sampler};
 use crate::scene::Scene;
-use crate::stage::{camera, object, scene, sphere};
-use crate::{Case, Trials};
+use crate::stage::hollow;
 
-pub(super) const CASES: &[Case] = &[
-    Case { id: "P04", tries: "random numbers at the chance to survive", run: at_the_chance },
-    Case { id: "P05", tries: "black surfaces end the path", run: black },
-    Case { id: "P06", tries: "every rule of roulette keeps the mean", run: fair },
-    Case { id: "P07", tries: "the spread that roulette brings", run: spread },
-];
-
-fn hollow(albedo: [f64; 3], emission: [f64; 3]) -> Scene {
-    let material = format!("{{ diffuse = {{ albedo = {albedo:?} }} }}");
-    scene(&[camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), object(&sphere([0.0; 3], 1.0), &material, emission)])
+fn diffuse(albedo: [f64; 3]) -> String {
+    format!("{{ diffuse = {{ albedo = {albedo:?} }} }}")
 }
 
 /// A sampler that always returns one number.
@@ -43,7 +35,7 @@ fn sample(estimator: &str, options: Options, scene: &Scene, u: f64) -> f64 {
 /// A path survives if the random number is below the survival probability, but not if both are equal, so no path
 /// survives black. With roulette from the first vertex on and a cut after 3 bounces, a path that always survives finds
 /// 4 vertices of weight 1.
-fn at_the_chance(trials: &mut Trials) {
+pub(super) fn at_the_chance(trials: &mut Trials) {
     let largest = 1.0 - f64::EPSILON / 2.0;
     let below_half = 0.5 - f64::EPSILON / 4.0;
     let roulette = Roulette::parse("albedo:0").ok();
@@ -57,7 +49,7 @@ fn at_the_chance(trials: &mut Trials) {
         (1.0, largest, 4.0),
         (1.0, 0.0, 4.0),
     ] {
-        let scene = hollow([albedo; 3], [1.0; 3]);
+        let scene = hollow(&diffuse([albedo; 3]), [1.0; 3]);
         for entry in ESTIMATORS.iter().filter(|entry| entry.roulette.is_some()) {
             let options = Options { max_depth: Some(3), roulette, ..Options::default() };
             let found = sample(entry.name, options, &scene, u);
@@ -67,9 +59,9 @@ fn at_the_chance(trials: &mut Trials) {
 }
 
 /// One ray per path, and exactly the emission of the surface.
-fn black(trials: &mut Trials) {
-    let scene = hollow([0.0; 3], [3.0, 0.0, 0.5]);
-    for (estimator, kernel) in full_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name))) {
+pub(super) fn black(trials: &mut Trials) {
+    let scene = hollow(&diffuse([0.0; 3]), [3.0, 0.0, 0.5]);
+    for (estimator, kernel) in with_kernels(full_estimators()) {
         for rule in ["albedo:5", "albedo:0", "throughput:0", "never"] {
             let roulette = Some(rule.to_string());
             let (estimator, kernel) = (estimator.to_string(), kernel.to_string());
@@ -87,8 +79,8 @@ fn black(trials: &mut Trials) {
 }
 
 /// Channels of different albedo share one roulette: each keeps its own mean, Le/(1 - rho).
-fn fair(trials: &mut Trials) {
-    let scene = hollow([0.5, 0.9, 0.2], [1.0, 2.0, 3.0]);
+pub(super) fn fair(trials: &mut Trials) {
+    let scene = hollow(&diffuse([0.5, 0.9, 0.2]), [1.0, 2.0, 3.0]);
     let mut bench = Bench::new(trials);
     bench.widest = [3e-2, 1e-3];
     for rule in
@@ -101,21 +93,10 @@ fn fair(trials: &mut Trials) {
     }
 }
 
-/// Moments of one channel over all samples: mean, variance within the pixels, and number of samples.
-fn moments(film: &Film) -> (f64, f64, f64) {
-    let (mut n, mut sum, mut spread) = (0.0, 0.0, 0.0);
-    for pixel in film.pixels() {
-        n += f64::from(pixel.count);
-        sum += pixel.sum[0];
-        spread += pixel.square[0] - pixel.sum[0] * pixel.sum[0] / f64::from(pixel.count);
-    }
-    (sum / n, spread / (n - film.pixels().len() as f64), n)
-}
-
 /// With roulette from the first vertex on, the number of vertices is geometric: deviation sqrt(rho)/(1 - rho). With
 /// smallpt's rule, five vertices are certain and the rest has the weight rho^5. The kurtosis of a geometric variate, 9
 /// + (1 - rho)^2/rho, gives the standard error of the variance.
-fn spread(trials: &mut Trials) {
+pub(super) fn spread(trials: &mut Trials) {
     for (rho, deviation, quick) in [
         (0.1, 0.351_364_184_463_153_4, 256),
         (0.5, std::f64::consts::SQRT_2, 256),
@@ -125,18 +106,17 @@ fn spread(trials: &mut Trials) {
         (0.999, 999.499_874_937_460_9, 4),
     ] {
         let rho: f64 = rho;
-        let scene = hollow([rho; 3], [1.0; 3]);
+        let scene = hollow(&diffuse([rho; 3]), [1.0; 3]);
         let spp = trials.times(quick, 64 * quick) as u32;
         let rho5 = rho * rho * rho * rho * rho;
         for (rule, weight) in [("albedo:0", 1.0), ("albedo:5", rho5)] {
-            for (estimator, kernel) in
-                arriving_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name)))
-            {
+            for (estimator, kernel) in with_kernels(arriving_estimators()) {
                 let what = format!("rho {rho}, {rule}, {estimator}, {kernel}");
                 let (estimator, kernel) = (estimator.to_string(), kernel.to_string());
                 let roulette = Some(rule.to_string());
                 let spec = Spec { width: 32, height: 32, seed: 22, estimator, kernel, roulette, ..Spec::default() };
-                let (mean, variance, n) = moments(&run(&scene, Settings { spp, spec, ..Settings::default() }).film);
+                let film = run(&scene, Settings { spp, spec, ..Settings::default() }).film;
+                let Moments { mean, variance, n } = Moments::of(&film, 0);
                 let exact = weight * weight * deviation * deviation;
                 let z_mean = (mean - 1.0 / (1.0 - rho)) / (exact / n).sqrt();
                 let z_variance = (variance / exact - 1.0) / ((8.0 + (1.0 - rho) * (1.0 - rho) / rho) / n).sqrt();

@@ -1,19 +1,14 @@
 //! Sums and variances of many samples.
 
 use super::unguarded::{f32_sum, f64_sum, kahan_sum, variance_by_squares};
+use crate::Trials;
 use crate::analysis::mean::Moments;
+use crate::double_double::{Dd, two_sum};
 use crate::film::{PixelSum, SAMPLE_BLOCK, SampleSum};
 use crate::math::Rgb;
-use crate::{Case, Trials};
 use rand::Rng;
 use rand_pcg::Pcg64Mcg;
 use std::iter::repeat_n;
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "P11", tries: "the sum of a million samples and more", run: long_sums },
-    Case { id: "P12", tries: "the variance of values far from 0", run: variance },
-    Case { id: "P13", tries: "sums of which almost all cancels", run: cancellation },
-];
 
 /// A pixel's sum, as a film computes it.
 fn film_sum(values: impl Iterator<Item = f64>) -> PixelSum {
@@ -25,22 +20,17 @@ fn film_sum(values: impl Iterator<Item = f64>) -> PixelSum {
 /// The sum as two f64, of which the second holds the digits lost by the first (T. J. Dekker, "A floating-point
 /// technique for extending the available precision", Numerische Mathematik 18, 1971; two-sum by D. E. Knuth).
 fn double_double_sum(values: impl Iterator<Item = f64>) -> f64 {
-    let two_sum = |a: f64, b: f64| {
-        let sum = a + b;
-        let virtual_b = sum - a;
-        (sum, (a - (sum - virtual_b)) + (b - virtual_b))
+    let add = |Dd(high, low), value| {
+        let Dd(sum, lost) = two_sum(high, value);
+        two_sum(sum, low + lost)
     };
-    let (mut high, mut low) = (0.0, 0.0);
-    for value in values {
-        let (sum, lost) = two_sum(high, value);
-        (high, low) = two_sum(sum, low + lost);
-    }
+    let Dd(high, low) = values.fold(Dd(0.0, 0.0), add);
     high + low
 }
 
 /// Equal samples. A running sum in f32 is off by 1 % after a million samples and by 10 % after ten million; a sum of
 /// ones stops at 2^24.
-fn long_sums(trials: &mut Trials) {
+pub(super) fn long_sums(trials: &mut Trials) {
     for n in [1_000_000, trials.times(3_000_000, 100_000_000) as u32] {
         let exact = 0.7 * f64::from(n);
         let found = film_sum(repeat_n(0.7, n as usize));
@@ -59,7 +49,7 @@ fn long_sums(trials: &mut Trials) {
 /// 4, 7, 13 and 16 have the variance 22.5, or 30 as a sample, whatever offset is added. A film keeps sums of squares.
 /// They are accurate for samples that differ by at least a millionth of their size, and never give a negative
 /// variance.
-fn variance(trials: &mut Trials) {
+pub(super) fn variance(trials: &mut Trials) {
     for offset in [0.0, 1e8, 1e9] {
         let values = [4.0, 7.0, 13.0, 16.0].map(|value| value + offset);
         let moments = Moments::of(&values);
@@ -88,7 +78,7 @@ fn variance(trials: &mut Trials) {
 
 /// Films do not use compensated sums, but their error has a bound: for sums of m samples that are added along a tree
 /// of depth d, (m - 1 + d) 2^-53 times the sum of the absolute values.
-fn cancellation(trials: &mut Trials) {
+pub(super) fn cancellation(trials: &mut Trials) {
     let four = [1.0, 1e100, 1.0, -1e100];
     trials.same("unguarded, Kahan's sum", 0.0, kahan_sum(four.into_iter()));
     let within = |values: &[f64]| {

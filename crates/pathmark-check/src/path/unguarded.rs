@@ -1,11 +1,9 @@
 //! Sums and a variance in their simplest form, for comparison with the guarded versions in error and time.
 
-/// Running sum in f32.
 pub(crate) fn f32_sum(values: impl Iterator<Item = f64>) -> f64 {
     f64::from(values.fold(0.0_f32, |sum, value| sum + value as f32))
 }
 
-/// Running sum in f64.
 pub(crate) fn f64_sum(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |sum, value| sum + value)
 }

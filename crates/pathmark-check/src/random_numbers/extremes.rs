@@ -1,20 +1,15 @@
-//! The ends of [0, 1) through every consumer of random numbers: R09, R11.
+//! Numbers at the ends of [0, 1): through every consumer, and the conversion of bits to numbers below 1: R09, R10, R11.
 
-use super::first;
+use super::unguarded::{unit_in_f32, unit_of_all_bits};
+use super::{first, keyed};
+use crate::bare_scene::every_accelerated_scene;
 use crate::estimator::{AnyEstimator, ESTIMATORS, Options, Probe, any_estimator, camera_ray};
 use crate::math::{Ray, Rgb, dot};
-use crate::samplers::keyed;
 use crate::sampling::{Address, Independent, Purpose, SampleKey, Sampler, concentric_disk, mix, tent, unit};
-use crate::scene::{AllEffects, CAMERA_EXAMPLES, Fog, SCENES, Scan, Scene, SurfaceOrigin, accelerator, load};
+use crate::scene::{AllEffects, CAMERA_EXAMPLES, Fog, Scene, SurfaceOrigin};
 use crate::stage::{DIFFUSE, named, scene, sphere};
-use crate::{Case, Trials};
+use crate::{Trials, U, critical};
 
-pub(super) const CASES: &[Case] = &[
-    Case { id: "R09", tries: "0 and 1 - 2^-53 through every camera, material, light and estimator", run: consumers },
-    Case { id: "R11", tries: "free paths in fog for 0, 1 - 2^-53 and all between", run: free_paths },
-];
-
-const U: f64 = 0.5 * f64::EPSILON;
 const LAST: f64 = 1.0 - U;
 const PAIRS: [[f64; 2]; 9] =
     [[0.0, 0.0], [0.0, LAST], [LAST, 0.0], [LAST, LAST], [0.0, 0.5], [0.5, 0.0], [0.5, LAST], [LAST, 0.5], [U, U]];
@@ -43,20 +38,10 @@ impl Sampler for Stub {
     }
 }
 
-fn consumers(trials: &mut Trials) {
+pub(super) fn consumers(trials: &mut Trials) {
     cameras_and_lights(trials);
     materials(trials);
     estimators(trials);
-}
-
-fn scenes() -> impl Iterator<Item = Scene> {
-    let name = |name: &'static str| if name == "spheres" { "spheres:100" } else { name };
-    let fast = |scene: Scene| {
-        let fitting =
-            accelerator(None, scene.owners.len(), Scan::OneByOne).and_then(|entry| scene.accelerated(entry.name));
-        fitting.unwrap_or(scene)
-    };
-    SCENES.iter().map(move |(scene, _)| fast(load(name(scene)).expect("a shipped scene")))
 }
 
 /// A glowing sphere around everything that the camera sees.
@@ -68,7 +53,7 @@ fn room(camera: &str) -> Scene {
 /// density, or is none.
 fn cameras_and_lights(trials: &mut Trials) {
     let (mut rays, mut bad_rays, mut aims, mut bad_aims) = (0, 0, 0, 0);
-    for scene in scenes().chain(CAMERA_EXAMPLES.iter().map(|camera| room(camera))) {
+    for scene in every_accelerated_scene().chain(CAMERA_EXAMPLES.iter().map(|camera| room(camera))) {
         let view = scene.camera.view(16, 12);
         let scene = scene.lit(&view);
         for film in PAIRS {
@@ -114,7 +99,7 @@ fn aimed(scene: &Scene, ray: &Ray, u: [f64; 2]) -> (u64, u64) {
 /// Tries every material of every scene, for directions from the normal down to grazing, from both sides.
 fn materials(trials: &mut Trials) {
     let (mut tried, mut wrong) = (0, 0);
-    for object in scenes().flat_map(|scene| scene.objects.into_iter().take(100)) {
+    for object in every_accelerated_scene().flat_map(|scene| scene.objects.into_iter().take(100)) {
         for cos in [1.0, 0.5, 1e-8, 0.0] {
             let wo = crate::math::Vec3::new(f64::sqrt(1.0 - cos * cos), 0.0, cos);
             for (u, inside) in PAIRS.into_iter().flat_map(|u| [(u, false), (u, true)]) {
@@ -170,7 +155,7 @@ fn estimators(trials: &mut Trials) {
         let options = Options { max_depth: Some(depth), ..Options::default() };
         let (mut tried, mut wrong, mut closed, mut leaks) = (0, 0, 0, 0);
         let estimator = any_estimator(entry.name, options).expect("an estimator of the table");
-        for scene in scenes() {
+        for scene in every_accelerated_scene() {
             let is_closed = scene.background.is_none() && scene.fog.is_none();
             let lit = scene.lit(&scene.camera.view(SIZE[0], SIZE[1]));
             let scene = if entry.aims { &lit } else { &scene };
@@ -204,7 +189,7 @@ fn estimators(trials: &mut Trials) {
 
 /// -ln(u) is unbounded at 0, -ln(1 - u) at 1. With u < 1 the latter is at most 53 ln 2, and it is exact where u is
 /// small.
-fn free_paths(trials: &mut Trials) {
+pub(super) fn free_paths(trials: &mut Trials) {
     trials.same("-ln(u) at 0", &f64::INFINITY, &(-libm::log(0.0)));
     let fog = |scattering: f64| Fog { absorption: Rgb::BLACK, scattering, emission: Rgb::BLACK };
     for scattering in [1e-100, 1e-3, 1.0, 1e100] {
@@ -226,8 +211,45 @@ fn free_paths(trials: &mut Trials) {
         trials.never(name, "free paths that are negative or endless", wrong, n.into());
         // An exponential distribution with mean 1/2 has standard deviation 1/2.
         let z = (sum / f64::from(n) - 0.5) / (0.5 / f64::from(n).sqrt());
-        trials.deviates_below(format!("{name}: mean free path"), crate::level::critical(3), z);
+        trials.deviates_below(format!("{name}: mean free path"), critical(3), z);
     }
     let by_unit = (0..1000).map(|k| fog(1.0).free_path(|| unit(u64::MAX - (k << 11)))).all(f64::is_finite);
     trials.holds("the largest 1000 numbers", "finite", by_unit, by_unit);
+}
+
+/// Multiplying all 64 bits, or 32 bits in single precision, rounds the largest integers up to 1. The top 53 bits as a
+/// multiple of 2^-53 stay below.
+pub(super) fn below_one(trials: &mut Trials) {
+    let n = trials.times(1 << 20, 1 << 26);
+    let outside =
+        (0..n).filter(|k| !(0.0..1.0).contains(&unit(*k)) || !(0.0..1.0).contains(&unit(u64::MAX - k))).count();
+    trials.never("53 bits, both ends", "numbers outside of [0, 1)", outside as u64, 2 * n);
+    trials.close("53 bits, the largest", 1.0 - 0.5 * f64::EPSILON, unit(u64::MAX), 0.0);
+    trials.close("53 bits, the smallest above 0", 0.5 * f64::EPSILON, unit(1 << 11), 0.0);
+    let ones = (0..1 << 20).filter(|k| unit_in_f32(u32::MAX - k) >= 1.0).count();
+    trials.same("32 bits in f32: integers that become 1", &128, &ones);
+    trials.same(
+        "32 bits in f32: the first of them",
+        &(true, false),
+        &(unit_in_f32(0xFFFF_FF80) == 1.0, unit_in_f32(0xFFFF_FF7F) == 1.0),
+    );
+    let ones = (0..1 << 20).filter(|k| unit_of_all_bits(u64::MAX - k) >= 1.0).count();
+    trials.same("64 bits in f64: integers that become 1", &1024, &ones);
+    trials.same("0.99999999 in f32", &1.0, &(0.999_999_99_f64 as f32));
+    for (name, sampler) in keyed() {
+        let mut outside = 0;
+        let tried = trials.times(50_000, 5_000_000) as u32;
+        for k in 0..tried {
+            for (sample, purpose) in [(k, Purpose::Film), (u32::MAX - k, Purpose::Bsdf)] {
+                let numbers = first(&*sampler, u64::from(k), !k, sample, (k as u16, purpose));
+                outside += u64::from(!numbers.iter().all(|u| (0.0..1.0).contains(u)));
+            }
+        }
+        trials.never(
+            format!("{name}, first and last samples"),
+            "numbers outside of [0, 1)",
+            outside,
+            2 * u64::from(tried),
+        );
+    }
 }

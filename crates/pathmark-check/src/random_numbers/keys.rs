@@ -1,24 +1,18 @@
 //! Keys: no key is zero, no two addresses share one: R05, R06.
 
-use super::first;
 use super::unguarded::{fmix64, key_of_32_bits, wang_hash, xorshift32};
+use super::{first, keyed};
+use crate::Trials;
 use crate::analysis::randomness::repeats::{repeated, repeated_words};
 use crate::measure::LARGEST_SEED;
-use crate::samplers::keyed;
 use crate::sampling::{Address, Purpose, REFERENCE_SEEDS, SampleKey, Sampler, mix};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "R05", tries: "no key of pixels and seeds makes a generator of zeros", run: zeros },
-    Case { id: "R06", tries: "no two addresses share their numbers; the mix is a bijection", run: collisions },
-];
 
 /// Seeds at the ends of integer ranges.
 const SEEDS: [u64; 6] = [0, 1, 1 << 31, (1 << 32) - 1, 1 << 63, u64::MAX];
 
 /// Wang's hash of pixel 61 is 0, and xorshift with state 0 returns zeros for ever. The finaliser of Murmur's hash maps
 /// 0 to 0. With the program's samplers no pixel starts with four zeros, whatever the seed.
-fn zeros(trials: &mut Trials) {
+pub(super) fn zeros(trials: &mut Trials) {
     trials.same("Wang's hash of 61", &0, &wang_hash(61));
     let mut state = wang_hash(61);
     trials.same(
@@ -78,7 +72,7 @@ fn bits([u, v]: [f64; 2]) -> u128 {
 /// Exhaustive: every pixel and sample of an image, every use along a path with its branches, and two images of a seed
 /// and of a reference seed. By chance, one in 1e16 such sets contains a pair twice. With 32-bit keys, 72 pairs of
 /// pixels of such an image share a key.
-fn collisions(trials: &mut Trials) {
+pub(super) fn collisions(trials: &mut Trials) {
     bijection(trials);
     let pairs = repeated_words((0..786_432).map(key_of_32_bits).collect());
     // 786432²/2/2^32, with a tolerance of five times its square root.

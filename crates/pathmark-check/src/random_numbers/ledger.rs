@@ -1,18 +1,13 @@
 //! Use of random numbers: each address at most once in a sample: R13.
 
+use super::keyed;
+use crate::Trials;
+use crate::bare_scene::every_accelerated_scene;
 use crate::estimator::{AnyEstimator, ESTIMATORS, Options, any_estimator, camera_ray, extra_camera_rays};
-use crate::samplers::keyed;
 use crate::sampling::{Address, SampleKey, Sampler};
-use crate::scene::{AllEffects, SCENES, Scan, Scene, accelerator, load};
-use crate::{Case, Trials};
+use crate::scene::{AllEffects, Scene};
 use std::collections::HashSet;
 use std::sync::{Mutex, PoisonError};
-
-pub(super) const CASES: &[Case] = &[Case {
-    id: "R13",
-    tries: "within a sample no number is used twice, in every scene by every estimator",
-    run: once,
-}];
 
 /// A sampler that records the addresses of the random numbers that it returns.
 struct Ledger {
@@ -77,17 +72,13 @@ impl Samples<'_> {
     }
 }
 
-fn once(trials: &mut Trials) {
+pub(super) fn once(trials: &mut Trials) {
     let pixels = trials.times(4, 192) as u32;
     let ledgers: Vec<(&str, Ledger)> =
         keyed().map(|(name, sampler)| (name, Ledger { sampler, used: Mutex::new(Vec::new()) })).collect();
     let mut all: Vec<Vec<Found>> =
         ESTIMATORS.iter().map(|_| ledgers.iter().map(|_| Found::default()).collect()).collect();
-    for (scene, _) in SCENES {
-        let scene = load(if *scene == "spheres" { "spheres:100" } else { scene }).expect("a shipped scene");
-        let fitting =
-            accelerator(None, scene.owners.len(), Scan::OneByOne).and_then(|entry| scene.accelerated(entry.name));
-        let scene = fitting.unwrap_or(scene);
+    for scene in every_accelerated_scene() {
         let lit = scene.lit(&scene.camera.view(16, 12));
         for (entry, all) in ESTIMATORS.iter().zip(&mut all) {
             // An endless mirror room would reach the maximum number of bounces.

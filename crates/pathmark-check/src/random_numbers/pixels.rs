@@ -1,17 +1,14 @@
-//! Random numbers across the pixels of an image: R04.
+//! Random numbers across the pixels of an image: R04; and those of neighbouring pixels together, through a battery of
+//! tests for generators: R14.
 
-use super::first;
 use super::unguarded::{draw, sequential_state, sequential_stream};
+use super::{first, keyed, worst};
 use crate::analysis::chi_square::{even, score};
+use crate::analysis::randomness::battery::{birthdays, bytes, pairs, ranks, single_bits};
 use crate::analysis::randomness::correlation::of_uniform as correlation;
-use crate::level::critical;
-use crate::samplers::keyed;
 use crate::sampling::{Purpose, is_spread};
-use crate::{Case, Trials};
+use crate::{Trials, critical};
 use rand_pcg::Pcg32;
-
-pub(super) const CASES: &[Case] =
-    &[Case { id: "R04", tries: "8 draws of 786 432 pixels, 4 seeds: chi-square, two-sided, and lags", run: across }];
 
 const WIDTH: usize = 1024;
 const PIXELS: usize = WIDTH * 768;
@@ -39,11 +36,7 @@ fn scores(draws: &Draws) -> [Vec<f64>; 3] {
     [cells, lags, pairs.map(|(a, b)| correlation(&draws[a], &draws[b])).collect()]
 }
 
-fn worst(scores: &[f64]) -> f64 {
-    scores.iter().copied().fold(0.0, |worst: f64, z| if z.abs() > worst.abs() { z } else { worst })
-}
-
-fn across(trials: &mut Trials) {
+pub(super) fn across(trials: &mut Trials) {
     let samples = trials.times(1, 16) as u32;
     let tests = keyed().count() * SEEDS.len() * samples as usize * (USES.len() * 2 * (1 + LAGS.len()) + 28);
     let limit = critical(tests);
@@ -95,4 +88,37 @@ fn sequential(trials: &mut Trials) {
         trials.at_least(format!("{name}, 256 cells: worst deviation"), 5.0, worst(&cells).abs());
         trials.at_least(format!("{name}, lags: worst deviation"), least, worst(&lags).abs());
     }
+}
+
+/// The draws of a pixel.
+const BATTERY_USES: [(u16, Purpose); 4] =
+    [(1, Purpose::Bsdf), (2, Purpose::Bsdf), (3, Purpose::Light), (6, Purpose::Roulette)];
+const DRAWS: u32 = 2 * BATTERY_USES.len() as u32;
+
+/// The leading 53 bits of a number.
+fn bits(u: f64) -> u64 {
+    (u * 9_007_199_254_740_992.0) as u64
+}
+
+pub(super) fn battery(trials: &mut Trials) {
+    let pixels = trials.times(1 << 16, 1 << 21) as u32;
+    let limit = critical(keyed().count() * 2 * (5 + 53));
+    for (name, sampler) in keyed() {
+        let pixel_major: Vec<u64> = (0..pixels)
+            .flat_map(|pixel| BATTERY_USES.into_iter().flat_map(move |used| [(pixel, used)]))
+            .flat_map(|(pixel, used)| first(&*sampler, 1, pixel, 0, used).map(bits))
+            .collect();
+        let draw_major: Vec<u64> = (0..DRAWS)
+            .flat_map(|draw| pixel_major.iter().skip(draw as usize).step_by(DRAWS as usize).copied())
+            .collect();
+        for (order, numbers) in [("pixel by pixel", pixel_major), ("draw by draw", draw_major)] {
+            let variant = format!("{name}, {order}");
+            trials.deviates_below(format!("{variant}: bytes"), limit, bytes(&numbers));
+            trials.deviates_below(format!("{variant}: pairs of bytes"), limit, pairs(&numbers));
+            trials.deviates_below(format!("{variant}: worst of 53 bits"), limit, single_bits(&numbers));
+            trials.deviates_below(format!("{variant}: birthdays"), limit, birthdays(&numbers));
+            trials.deviates_below(format!("{variant}: ranks of matrices"), limit, ranks(&numbers));
+        }
+    }
+    trials.skip("PractRand and TestU01, which read 1 TiB, are not part of this program");
 }

@@ -1,24 +1,12 @@
 //! Generators seeded by row or pixel: R01, R02, R03.
 
-use super::first;
 use super::unguarded::{erand48, lcg_of_pixel, smallpt_row};
+use super::{first, keyed, worst};
 use crate::analysis::chi_square::even;
 use crate::analysis::randomness::correlation::of_uniform as correlation;
-use crate::level::critical;
-use crate::samplers::keyed;
 use crate::sampling::{Address, Purpose, SampleKey};
-use crate::{Case, Trials};
+use crate::{Trials, critical};
 use std::collections::BTreeMap;
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "R01", tries: "rows of an image share no stream, as smallpt's rows do", run: rows },
-    Case { id: "R02", tries: "rows do not differ by a constant at every draw, as smallpt's do", run: differences },
-    Case {
-        id: "R03",
-        tries: "neighbours do not differ by a constant, as those of a generator seeded by the pixel do",
-        run: neighbours,
-    },
-];
 
 const PIXELS: u32 = 786_432;
 
@@ -34,7 +22,7 @@ fn groups<T: Ord>(values: impl Iterator<Item = T>) -> (usize, usize, usize) {
 
 /// smallpt's seed is the cube of the row, which wraps at 2^16. Of 768 rows, 48 share a stream, up to 12 of them the
 /// same one; of 2160 rows, 270 share one, up to 34 the same one.
-fn rows(trials: &mut Trials) {
+pub(super) fn rows(trials: &mut Trials) {
     for (rows, expected) in [(768, (730, 48, 12)), (2160, (1964, 270, 34))] {
         trials.same(
             format!("smallpt, {rows} rows: streams, rows that share, largest group"),
@@ -54,13 +42,9 @@ fn rows(trials: &mut Trials) {
             (0..4096).map(|x| first(&*sampler, 1, y * 4096 + x, 0, (0, Purpose::Film))[0] - 0.5).collect::<Vec<_>>()
         };
         let zero = row(0);
-        let worst = (1..12).map(|k| correlation(&zero, &row(64 * k))).fold(0.0, largest);
+        let worst = worst((1..12).map(|k| correlation(&zero, &row(64 * k))));
         trials.deviates_below(format!("{name}: rows that are multiples of 64 apart"), limit, worst);
     }
-}
-
-fn largest(worst: f64, z: f64) -> f64 {
-    if z.abs() > worst.abs() { z } else { worst }
 }
 
 /// The cell, out of 64, of the difference modulo 1.
@@ -70,7 +54,7 @@ fn cell(a: f64, b: f64) -> usize {
 
 /// Rows 32 and 0 of smallpt differ by exactly 1/2 at every draw. With the program's samplers, the differences of two
 /// rows are uniform.
-fn differences(trials: &mut Trials) {
+pub(super) fn differences(trials: &mut Trials) {
     let draws = 1000;
     let (mut zero, mut other) = (smallpt_row(0), smallpt_row(32));
     let halves = (0..draws).filter(|_| (erand48(&mut zero) - erand48(&mut other)).abs() == 0.5).count();
@@ -94,7 +78,7 @@ fn differences(trials: &mut Trials) {
 }
 
 /// The first draws of neighbours differ by 1664525/2^32 = 0.000387552427 with a generator seeded by the pixel.
-fn neighbours(trials: &mut Trials) {
+pub(super) fn neighbours(trials: &mut Trials) {
     let step = lcg_of_pixel(1001) - lcg_of_pixel(1000);
     trials.close("seeded by the pixel: difference of neighbours", 0.000_387_552_427, step, 1e-12);
     let constant: Vec<f64> = (0..PIXELS).map(|pixel| lcg_of_pixel(pixel) - 0.5).collect();

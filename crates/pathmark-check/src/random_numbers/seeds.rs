@@ -1,27 +1,17 @@
 //! Independence of the images of different seeds: R07.
 
-use super::first;
 use super::unguarded::seed_plus_pixel;
+use super::{first, keyed, worst};
 use crate::analysis::randomness::fourier::{Square, correlations};
-use crate::image_mean::run;
 use crate::kernel::{KERNELS, Spec};
-use crate::level::critical;
-use crate::samplers::keyed;
+use crate::rendering::run;
 use crate::sampling::{Purpose, REFERENCE_SEEDS};
 use crate::scene::load;
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] =
-    &[Case { id: "R07", tries: "noise of seeds s and s + 2^k at all lags, draws and images", run: seeds }];
+use crate::{Trials, critical};
 
 const SEED: u64 = 5;
 
-/// The score with the largest absolute value over all lags.
-fn worst(scores: &[f64]) -> f64 {
-    scores.iter().copied().fold(0.0, |worst: f64, z| if z.abs() > worst.abs() { z } else { worst })
-}
-
-fn seeds(trials: &mut Trials) {
+pub(super) fn seeds(trials: &mut Trials) {
     draws(trials);
     images(trials);
 }

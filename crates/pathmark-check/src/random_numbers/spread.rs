@@ -1,17 +1,9 @@
 //! Samplers that spread a pixel's samples: R15, run for every keyed sampler.
 
-use super::first;
+use super::{first, keyed, worst};
 use crate::analysis::chi_square::even;
-use crate::level::critical;
-use crate::samplers::keyed;
 use crate::sampling::{Purpose, Sampler};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[Case {
-    id: "R15",
-    tries: "means over scramblings after any number of samples, and every two numbers",
-    run: spread,
-}];
+use crate::{Trials, critical};
 
 /// Random numbers for the position in the pixel and for the first two directions.
 const USES: [(u16, Purpose); 3] = [(0, Purpose::Film), (1, Purpose::Bsdf), (2, Purpose::Bsdf)];
@@ -50,7 +42,7 @@ fn estimate(sampler: &dyn Sampler, integrand: &Integrand, seed: u64, pixel: u32,
     (0..samples).map(|sample| (integrand.value)(sample % 4, numbers(sample))).sum::<f64>() / f64::from(samples)
 }
 
-fn spread(trials: &mut Trials) {
+pub(super) fn spread(trials: &mut Trials) {
     means(trials);
     convergence(trials);
     projections(trials);
@@ -122,8 +114,11 @@ fn projections(trials: &mut Trials) {
                 }
             }
             let scores = together.iter().map(|counts| even(counts));
-            let worst = scores.fold(0.0, |worst: f64, z| if z.abs() > worst.abs() { z } else { worst });
-            trials.deviates_below(format!("{name}, sample {sample}: worst of {pairs} pairs of numbers"), limit, worst);
+            trials.deviates_below(
+                format!("{name}, sample {sample}: worst of {pairs} pairs of numbers"),
+                limit,
+                worst(scores),
+            );
         }
     }
 }

@@ -1,24 +1,14 @@
 //! Independence of the threads that draw random numbers; samplers that lack it are flagged: R08, R12.
 
 use crate::kernel::{KERNELS, Spec};
-use crate::level::critical;
 use crate::measure::{Settings, Setup};
 use crate::run::on_threads;
 use crate::sampling::{Address, Purpose, SAMPLERS, SampleKey, stateful_sampler};
 use crate::scene::{Scene, load};
 use crate::strategy::STRATEGIES;
-use crate::{Case, Trials};
+use crate::{Trials, critical};
 use std::collections::BTreeSet;
 use std::sync::Arc;
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "R08", tries: "one checksum for every strategy and number of threads", run: one_checksum },
-    Case {
-        id: "R12",
-        tries: "generators that threads share: flagged, fair and never the same for two threads",
-        run: shared,
-    },
-];
 
 /// The checksum of a small image, if it has one.
 fn checksum(
@@ -35,7 +25,7 @@ fn checksum(
     outcome.map(|outcome| outcome.checksum).map_err(|error| error.to_string())
 }
 
-fn one_checksum(trials: &mut Trials) {
+pub(super) fn one_checksum(trials: &mut Trials) {
     let scene = Arc::new(load("cornell").expect("a shipped scene"));
     let threads: &[usize] = if trials.times(0, 1) == 0 { &[1, 2, 5] } else { &[1, 2, 3, 4, 5, 7, 8, 16, 64] };
     for kernel in KERNELS {
@@ -60,7 +50,7 @@ const SOME_ALIKE: &str = "racy";
 
 /// The table flags these samplers, and their images have no checksum. Eight threads that draw at once get numbers in
 /// [0, 1) with mean 1/2, and no two threads draw the same sequence, unless the sampler is there to show that error.
-fn shared(trials: &mut Trials) {
+pub(super) fn shared(trials: &mut Trials) {
     let scene = Arc::new(load("cornell").expect("a shipped scene"));
     let stateful = || SAMPLERS.iter().filter(|entry| !entry.deterministic);
     let limit = critical(stateful().count());

@@ -1,25 +1,11 @@
 //! Agreement of the estimators with each other and with closed forms: H35, H36.
 
-use crate::estimator::ESTIMATORS;
-use crate::image_mean::{Moments, difference, exact, render};
+use crate::exact::full_estimators;
 use crate::kernel::KERNELS;
-use crate::level::critical;
+use crate::rendering::{Moments, difference, exact, render};
 use crate::scene::Scene;
 use crate::stage::{camera, diffuse, object, plane, scene, sphere};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case {
-        id: "H35",
-        tries: "estimators with a light of area 1e-6 and with one that fills the hemisphere",
-        run: lights,
-    },
-    Case {
-        id: "H36",
-        tries: "an emitter seen directly, in a mirror and through glass: counted once",
-        run: counted_once,
-    },
-];
+use crate::{Trials, critical};
 
 /// A scene of a spot, with its radiance if there is a closed form.
 struct Spot {
@@ -34,7 +20,7 @@ const SIDE: u32 = 16;
 /// Compares every estimator that follows all light, with every kernel, with the closed form and with each of the
 /// others.
 fn agree(trials: &mut Trials, spots: &[Spot], spp: (u64, u64), widest: f64) {
-    let estimators: Vec<&str> = ESTIMATORS.iter().map(|entry| entry.name).filter(|name| *name != "whitted").collect();
+    let estimators: Vec<&str> = full_estimators().collect();
     let ways: Vec<(&str, &str)> =
         KERNELS.iter().flat_map(|kernel| estimators.iter().map(|estimator| (kernel.name, *estimator))).collect();
     let limit = critical(spots.len() * ways.len() * (ways.len() + 1) / 2);
@@ -61,7 +47,7 @@ fn agree(trials: &mut Trials, spots: &[Spot], spp: (u64, u64), widest: f64) {
 
 /// A lamp of radius R at height h above a point of a floor gives the radiance albedo L (R/h)². Its area is 1e-6; its
 /// centre is 0.0006 above.
-fn lights(trials: &mut Trials) {
+pub(super) fn lights(trials: &mut Trials) {
     let floor = object(&plane([0.0; 3], [0.0, 1.0, 0.0]), &diffuse(0.5), [0.0; 3]);
     let (radius, height) = (0.000_282_094_791_773_878_16, 6e-4);
     let dark = "background = [0.0, 0.0, 0.0]\n".to_string();
@@ -98,7 +84,7 @@ fn lights(trials: &mut Trials) {
 /// Every object in the enclosure emits the share that it does not reflect, so the radiance is 1 in every direction.
 /// Counting an emitter twice or not at all would change it. Light cannot be aimed at through glass: there, light found
 /// by BSDF sampling must count in full.
-fn counted_once(trials: &mut Trials) {
+pub(super) fn counted_once(trials: &mut Trials) {
     let enclosure = || object(&sphere([0.0; 3], 10.0), &diffuse(0.0), [1.0; 3]);
     let seen = |things: &[String]| scene(&[camera([0.0, 0.3, 5.0], [0.0; 3]), enclosure(), things.concat()]);
     let ball = |radius: f64| object(&sphere([0.0; 3], radius), &diffuse(0.8), [0.2; 3]);

@@ -1,24 +1,20 @@
 //! Reciprocity and albedo of materials: H26.
 
 use super::unguarded::{albedo_by_cosines, albedo_by_normals, albedo_by_visible_normals};
-use crate::level::critical;
 use crate::material::{Ggx, Material};
 use crate::materials::{every_material, towards};
 use crate::math::{Vec3, fresnel_dielectric};
 use crate::refusals::material;
 use crate::sampling::{mix, uniform_sphere, unit};
 use crate::scene::AllEffects;
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] =
-    &[Case { id: "H26", tries: "reciprocity of pairs of directions, and albedos against a table", run: balance }];
+use crate::{Trials, critical};
 
 fn direction(key: u64) -> Vec3 {
     let d = uniform_sphere([unit(mix(2 * key)), unit(mix(2 * key + 1))]).normalized();
     Vec3 { z: d.z.abs(), ..d }
 }
 
-fn balance(trials: &mut Trials) {
+pub(super) fn balance(trials: &mut Trials) {
     reciprocity(trials);
     albedos_of_the_table(trials);
     mean_weights(trials);

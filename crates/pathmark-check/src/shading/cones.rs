@@ -1,23 +1,15 @@
 //! The cone that a sphere subtends: H30, H31, H32.
 
 use super::unguarded::{naive_one_minus_cos, naive_one_minus_cos_f32};
+use super::warps::lit;
 use crate::analysis::chi_square::against;
 use crate::double_double::two_product;
-use crate::level::critical;
 use crate::math::{Vec3, dot};
 use crate::sampling::{UNIFORM_SPHERE_DENSITY, mix, unit};
-use crate::scene::{Scene, one_minus_cos};
-use crate::stage::{camera_above, diffuse, object, scene, sphere};
-use crate::{Case, Trials};
+use crate::scene::one_minus_cos;
+use crate::stage::sphere;
+use crate::{Trials, U, critical};
 use std::f64::consts::PI;
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "H30", tries: "cones of spheres from next to them to 1e12 radii away", run: digits },
-    Case { id: "H31", tries: "aiming from inside a light", run: inside },
-    Case { id: "H32", tries: "aiming from one rounding outside of a light", run: touching },
-];
-
-const U: f64 = 0.5 * f64::EPSILON;
 
 /// Distance in radii, 1 - cos, and the error of the naive form in double and in single precision.
 const TABLE: [(f64, f64, f64, f64); 7] = [
@@ -36,7 +28,7 @@ fn exact(radius: f64, distance: f64) -> f64 {
     r2.over(square + two_product(distance, 1.0) * (square - r2).sqrt())
 }
 
-fn digits(trials: &mut Trials) {
+pub(super) fn digits(trials: &mut Trials) {
     for (distance, right, naive, naive_f32) in TABLE {
         for scale in [1.0, 1024.0, 1.0 / 1024.0] {
             let off = (one_minus_cos(scale, distance * scale) / right - 1.0).abs();
@@ -64,22 +56,12 @@ fn digits(trials: &mut Trials) {
     trials.at_most("against twice the digits: roundings", 8.0, worst);
 }
 
-/// A single lamp of radius 1, with its lights to aim at.
-fn lamp() -> Scene {
-    let scene = scene(&[
-        "background = [0.0, 0.0, 0.0]\n".to_string(),
-        camera_above([0.0, 0.0, 4.0], [0.0; 3], 40.0),
-        object(&sphere([0.0; 3], 1.0), &diffuse(0.0), [1.0; 3]),
-    ]);
-    scene.lit(&scene.camera.view(8, 8))
-}
-
 /// Inside the sphere the explicit formula takes the square root of a negative number. Uniform directions are right at
 /// every point inside.
-fn inside(trials: &mut Trials) {
+pub(super) fn inside(trials: &mut Trials) {
     let naive = naive_one_minus_cos(1.0, 0.5);
     trials.holds("naive, half a radius from the centre", "NaN", naive, naive.is_nan());
-    let scene = lamp();
+    let scene = lit(&sphere([0.0; 3], 1.0));
     let lights = scene.lights.as_ref().expect("a lit scene");
     let n = trials.times(40_000, 10_000_000);
     let limit = critical(12);
@@ -111,13 +93,13 @@ fn inside(trials: &mut Trials) {
 }
 
 /// d = r (1 + 2^-52): the cone fills nearly half of the sphere of directions, and the density matches it.
-fn touching(trials: &mut Trials) {
+pub(super) fn touching(trials: &mut Trials) {
     let distance = 1.0 + f64::EPSILON;
     // cos = sqrt((d - r)(d + r))/d, about sqrt(2^-51).
     let right = 1.0 - 2.107_342_425_544_701_7e-8;
     trials.close("1 - cos", right, one_minus_cos(1.0, distance), 4.0 * U);
     trials.close("1 - cos on the surface", 1.0, one_minus_cos(1.0, 1.0), 0.0);
-    let scene = lamp();
+    let scene = lit(&sphere([0.0; 3], 1.0));
     let lights = scene.lights.as_ref().expect("a lit scene");
     let (mut wrong, n) = (0, trials.times(20_000, 1_000_000));
     let last = 1.0 - U;

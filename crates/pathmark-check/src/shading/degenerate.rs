@@ -1,21 +1,16 @@
 //! Directions that are too long, opposite, grazing or below the surface: H25, H27.
 
 use super::unguarded::squared_tangent_of_angle;
+use crate::Trials;
 use crate::material::{Density, Ggx};
 use crate::materials::{every_material, towards};
 use crate::math::{Vec3, dot};
 use crate::sampling::{mix, uniform_sphere, unit};
 use crate::scene::AllEffects;
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "H25", tries: "directions longer than 1 by a rounding, along the surface and below it", run: beyond },
-    Case { id: "H27", tries: "opposite directions and grazing ones: half vectors of length 0", run: opposite },
-];
 
 /// Computed from the angle, the tangent of a normalised vector is NaN where z rounds above 1, saturates at grazing
 /// directions, and loses its sign below the surface. Computed from components it has none of these errors.
-fn beyond(trials: &mut Trials) {
+pub(super) fn beyond(trials: &mut Trials) {
     let above = 1.0 + f64::EPSILON;
     let by_angle = squared_tangent_of_angle(above);
     trials.holds("by the angle, z = 1 + ulp", "NaN", by_angle, by_angle.is_nan());
@@ -73,7 +68,7 @@ fn longer_than_one(trials: &mut Trials) {
 }
 
 /// The BSDF is finite or 0, and never NaN.
-fn opposite(trials: &mut Trials) {
+pub(super) fn opposite(trials: &mut Trials) {
     let above = Vec3::new(0.0, 0.0, 1.0);
     let (flat, steep, tiny) = (Vec3::new(1.0, 0.0, 0.0), towards(1e-8, 0.0), towards(1e-300, 0.7));
     let pairs = [

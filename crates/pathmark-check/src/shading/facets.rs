@@ -8,29 +8,17 @@ use crate::math::{Rgb, Vec3, dot, sin_cos_turns};
 use crate::quadrature::integral;
 use crate::sampling::{mix, unit};
 use crate::scene::AllEffects;
-use crate::{Case, Trials};
+use crate::{Trials, U};
 use std::f64::consts::{PI, TAU};
 
-pub(super) const CASES: &[Case] = &[
-    Case {
-        id: "H20",
-        tries: "the weak white furnace: G1 D/(4 cos) over the sphere, every roughness",
-        run: weak_furnace,
-    },
-    Case { id: "H21", tries: "weights of visible normals, along the surface and at extreme numbers", run: weights },
-    Case { id: "H22", tries: "the density of normals against double-double arithmetic", run: densities },
-];
-
 const ALPHAS: [f64; 10] = [1e-4, 3e-4, 1e-3, 0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 1.0];
-const U: f64 = 0.5 * f64::EPSILON;
-
 fn ggx(alpha: f64) -> Ggx {
     Ggx::new(alpha).expect("a roughness that is allowed")
 }
 
 /// The weak white furnace (Heitz 2014): facets that reflect everything and cast no shadow lose no light. The integral
 /// is 1 for every roughness and angle if D and G belong to the same distribution.
-fn weak_furnace(trials: &mut Trials) {
+pub(super) fn weak_furnace(trials: &mut Trials) {
     for alpha in ALPHAS {
         let ggx = ggx(alpha);
         for cos in [1.0, 0.75, 0.5, 0.25, 0.1, 0.05] {
@@ -62,7 +50,7 @@ fn weak_furnace(trials: &mut Trials) {
 
 /// F G2/G1 lies in [0, 1]. Sampling all normals instead of the visible ones gives unbounded weights at grazing
 /// directions.
-fn weights(trials: &mut Trials) {
+pub(super) fn weights(trials: &mut Trials) {
     let last = 1.0 - U;
     let extremes = [[0.0, 0.0], [0.0, last], [last, 0.0], [last, last], [0.5, last], [0.25, 0.0]];
     let n = trials.times(20_000, 1_000_000);
@@ -106,7 +94,7 @@ fn exact_masking(alpha: f64, w: Vec3) -> f64 {
 
 /// The results are right within 20 roundings. The usual form, with 1 + cos² (α² - 1), shows that the inputs are hard.
 /// At h = n in single precision it is off by 43 % for α = 3e-4 and divides by 0 for 1e-4.
-fn densities(trials: &mut Trials) {
+pub(super) fn densities(trials: &mut Trials) {
     let n = trials.times(20_000, 1_000_000);
     let mut cancelling: f64 = 0.0;
     for alpha in ALPHAS {

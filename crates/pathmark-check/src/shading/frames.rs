@@ -1,18 +1,9 @@
 //! Frames around normals: H01, H02.
 
 use super::unguarded::{frisvad_f32, frisvad_frame, smallpt_frame};
+use crate::Trials;
 use crate::math::{Frame, Vec3, dot};
 use crate::sampling::{mix, uniform_sphere, unit};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case {
-        id: "H01",
-        tries: "frames around the poles, the axes with signed zeros and 1000 neighbours of -z",
-        run: poles,
-    },
-    Case { id: "H02", tries: "frames next to where a construction changes sides", run: seams },
-];
 
 /// The largest deviation of the tangents from right angles to each other and to the normal, from length 1, and from
 /// right-handedness.
@@ -54,7 +45,7 @@ fn hard_normals() -> Vec<Vec3> {
 
 /// Tolerance of the catalogue for each of u.v, u.n, v.n, |u| - 1, |v| - 1: 6 roundings. Frisvad's frame shows that the
 /// inputs are hard: it is off by 0.919 in single precision and by 3.9e-4 in double.
-fn poles(trials: &mut Trials) {
+pub(super) fn poles(trials: &mut Trials) {
     let normals = hard_normals();
     trials.at_most("Duff et al., roundings", 6.0, worst(&normals, Frame::around));
     // smallpt's cross product has a slightly larger rounding error, and no other.
@@ -70,7 +61,7 @@ fn poles(trials: &mut Trials) {
 
 /// smallpt changes its axis at |n.x| = 0.1, where the cross product still has length 0.995. Duff's frame changes sides
 /// at z = 0, by the sign of z.
-fn seams(trials: &mut Trials) {
+pub(super) fn seams(trials: &mut Trials) {
     let (mut at_x, mut at_z) = (Vec::new(), Vec::new());
     for k in -1000..=1000_i32 {
         let step = f64::from(k) * f64::EPSILON;

@@ -4,17 +4,9 @@ use super::unguarded::schlick;
 use crate::math::{Vec3, dot, fresnel_dielectric, fresnel_schlick, refract};
 use crate::refusals::refused;
 use crate::sampling::{mix, unit};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "H10", tries: "reflectance at every hundredth of a cosine and next to the critical angle", run: values },
-    Case { id: "H11", tries: "indices that are equal, nearly equal, large, or no indices", run: indices },
-    Case { id: "H12", tries: "cosines along the surface and beyond 1, and there and back", run: cosines },
-];
+use crate::{Trials, U};
 
 const N: f64 = 1.5;
-const U: f64 = 0.5 * f64::EPSILON;
-
 /// Cosine, reflectance from outside, reflectance from inside; computed with mpmath.
 const TABLE: [(f64, f64, f64); 5] = [
     (1.0, 0.04, 0.04),
@@ -46,7 +38,7 @@ pub(crate) fn oracle() -> Vec<(f64, f64, f64)> {
     rows.iter().map(|[eta, cos, expected]| (number(eta), number(cos), number(expected))).collect()
 }
 
-fn values(trials: &mut Trials) {
+pub(super) fn values(trials: &mut Trials) {
     let rows = oracle();
     trials.same("rows of the oracle", &202, &rows.len());
     // From inside, the value varies with the root of the distance to the critical cosine, 0.7454, so it is very steep
@@ -117,7 +109,7 @@ fn how_far_off_schlick_is(trials: &mut Trials) {
     }
 }
 
-fn indices(trials: &mut Trials) {
+pub(super) fn indices(trials: &mut Trials) {
     let above = 1.0 + f64::EPSILON;
     for cos in [0.0, -0.0, 1e-150, 1e-8, 0.3, 1.0, above] {
         trials.close(format!("equal indices, cos {cos:?}"), 0.0, fresnel_dielectric(cos, 1.0), 0.0);
@@ -143,7 +135,7 @@ fn indices(trials: &mut Trials) {
     }
 }
 
-fn cosines(trials: &mut Trials) {
+pub(super) fn cosines(trials: &mut Trials) {
     let above = 1.0 + f64::EPSILON;
     let (mut outside, mut n) = (0, 0);
     for cos in [0.0, -0.0, 5e-324, 1e-150, 1e-8, 0.3, 1.0 - U, 1.0, above, -above] {

@@ -2,24 +2,18 @@
 
 use super::unguarded::schlick;
 use crate::estimator::ESTIMATORS;
-use crate::image_mean::{Moments, render};
 use crate::kernel::KERNELS;
-use crate::level::critical;
 use crate::material::{Dielectric, Fresnel, Material};
 use crate::materials::{every_material, towards};
 use crate::math::{Rgb, Vec3, fresnel_dielectric};
+use crate::rendering::{Moments, render};
 use crate::scene::{AllEffects, load};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "H13", tries: "weights of lobes that are chosen by chance, for every angle", run: weights },
-    Case { id: "H14", tries: "a furnace seen from inside the glass", run: inside_the_glass },
-];
+use crate::{Trials, critical};
 
 /// smallpt's probability of reflection, 1/4 + R/2, lies between 1/4 and 3/4. So no weight exceeds 4/3, none is 0/0
 /// under total reflection, and the mean weight is 1. Every other material with delta lobes also chooses them by their
 /// share of light.
-fn weights(trials: &mut Trials) {
+pub(super) fn weights(trials: &mut Trials) {
     let last = 1.0 - 0.5 * f64::EPSILON;
     for (fresnel, inside) in
         [Fresnel::Schlick, Fresnel::Exact].into_iter().flat_map(|kind| [(kind, false), (kind, true)])
@@ -99,7 +93,7 @@ fn shares(trials: &mut Trials) {
 
 /// Radiance is not scaled by the index squared, as documented: in equilibrium a camera inside smallpt's glass ball
 /// sees 1, not 2.25. This holds for every estimator that follows all light and for every kernel.
-fn inside_the_glass(trials: &mut Trials) {
+pub(super) fn inside_the_glass(trials: &mut Trials) {
     let mut scene = load("cornell").expect("a shipped scene").in_equilibrium();
     (scene.camera.position, scene.camera.advance) = (Vec3::new(73.0, 16.5, 78.0), 0.0);
     let estimators = || ESTIMATORS.iter().map(|entry| entry.name).filter(|name| *name != "whitted");

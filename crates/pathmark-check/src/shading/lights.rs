@@ -1,20 +1,14 @@
 //! Lights that contribute little or nothing, and very many lights: H37.
 
+use crate::Trials;
 use crate::estimator::ESTIMATORS;
-use crate::image_mean::{Moments, render};
 use crate::kernel::KERNELS;
+use crate::rendering::{Moments, render};
 use crate::scene::load;
 use crate::stage::{camera, diffuse, object, plane, scene, sphere};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[Case {
-    id: "H37",
-    tries: "lights below the horizon, edge on, inside of what is opaque, dark, and 100 000 of them",
-    run: hardly_there,
-}];
 
 /// Points that none of these lights reaches are black, and no sample is NaN.
-fn hardly_there(trials: &mut Trials) {
+pub(super) fn hardly_there(trials: &mut Trials) {
     let floor = || object(&plane([0.0; 3], [0.0, 1.0, 0.0]), &diffuse(0.5), [0.0; 3]);
     let lamp = |y: f64| object(&sphere([0.7, y, 0.0], 0.5), &diffuse(0.0), [3.0; 3]);
     // A square that stands on the floor: the visible point lies in its plane.

@@ -1,21 +1,12 @@
 //! The second report's guards and their effect on its material; the program's material creates no light: H24, H28.
 
 use super::unguarded::reflection_of_report_b;
+use crate::Trials;
 use crate::material::{Bsdf, Conductor, Facets, KdKs, Sampling};
 use crate::materials::towards;
 use crate::math::{Rgb, Vec3, fresnel_dielectric};
 use crate::quadrature::integral;
-use crate::{Case, Trials};
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "H24", tries: "the second report's guards, put back: the furnace must reject them", run: guards },
-    Case {
-        id: "H28",
-        tries: "the second report's body under facets gives back no more than arrives",
-        run: no_light_is_made,
-    },
-];
 
 /// Albedo at normal incidence.
 fn albedo(bsdf: &impl Fn(Vec3, Vec3) -> f64) -> f64 {
@@ -42,7 +33,7 @@ const TABLE: [(f64, f64, f64); 7] = [
 
 /// The guard on D acts below α = 0.13357 and makes a smooth surface nearly black. A furnace that detects a loss of a
 /// thousandth rejects every such roughness, and no other.
-fn guards(trials: &mut Trials) {
+pub(super) fn guards(trials: &mut Trials) {
     for (roughness, with_guards, without) in TABLE {
         let found = albedo(&|wo, wi| reflection_of_report_b(roughness, wo, wi));
         trials.close(format!("roughness {roughness}: albedo with the guards"), with_guards, found, 6e-4);
@@ -70,7 +61,7 @@ fn guards(trials: &mut Trials) {
 
 /// The report's material at every roughness and angle. Its albedo comes from the material's quadrature and from a
 /// plain quadrature of its BSDF.
-fn no_light_is_made(trials: &mut Trials) {
+pub(super) fn no_light_is_made(trials: &mut Trials) {
     let kd = Rgb { r: 0.3, g: 0.3, b: 0.25 };
     for roughness in [0.0, 0.05, 0.25, 0.5, 1.0] {
         for sampling in [Sampling::Cosine, Sampling::Vndf] {

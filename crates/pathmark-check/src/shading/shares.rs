@@ -1,21 +1,17 @@
 //! Densities and the weights of the power heuristic that are computed from them: H33, H34.
 
 use super::unguarded::power_heuristic_by_squares;
+use crate::Trials;
+use crate::bare_scene::every_scene;
 use crate::estimator::power_heuristic;
 use crate::material::Density;
 use crate::materials::{every_material, towards};
 use crate::sampling::{mix, unit};
-use crate::scene::{AllEffects, SCENES, load};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "H33", tries: "densities where there is light: above 0, finite, and delta by type", run: densities },
-    Case { id: "H34", tries: "shares of two ways of finding light: they sum to 1", run: shares },
-];
+use crate::scene::AllEffects;
 
 /// Where a material has a nonzero value, it has a density. Samples have a finite density, or are deltas, which cannot
 /// be evaluated. Aims at lights have a finite density in every scene of the program.
-fn densities(trials: &mut Trials) {
+pub(super) fn densities(trials: &mut Trials) {
     let n = trials.times(20_000, 1_000_000);
     for (number, (name, material)) in (0..).zip(every_material()) {
         let (mut without, mut endless, mut with_value) = (0, 0, 0);
@@ -48,8 +44,7 @@ fn densities(trials: &mut Trials) {
 fn aims(trials: &mut Trials) {
     let (mut wrong, mut n) = (0, 0);
     let rays = trials.times(100, 10_000) as u32;
-    for (name, _) in SCENES {
-        let scene = load(if *name == "spheres" { "spheres:100" } else { name }).expect("a shipped scene");
+    for scene in every_scene() {
         let view = scene.camera.view(64, 48);
         let scene = scene.lit(&view);
         let Some(lights) = &scene.lights else { continue };
@@ -69,7 +64,7 @@ fn aims(trials: &mut Trials) {
 }
 
 /// Squares of 1e300 overflow and squares of 1e-300 underflow, so computing with squares gives NaN weights.
-fn shares(trials: &mut Trials) {
+pub(super) fn shares(trials: &mut Trials) {
     let magnitudes = [0.0, 5e-324, 1e-300, 1e-160, 1e-8, 0.3, 1.0, 7.0, 1e8, 1e160, 1e300, f64::MAX];
     let (mut worst, mut by_squares): (f64, u64) = (0.0, 0);
     let off = |a: f64, b: f64| {

@@ -2,21 +2,15 @@
 
 use super::unguarded::mirror_of_report_b;
 use crate::estimator::ESTIMATORS;
-use crate::image_mean::{Moments, difference, render};
 use crate::kernel::KERNELS;
-use crate::level::critical;
 use crate::material::Density;
 use crate::materials::{every_material, towards};
 use crate::math::{Rgb, Vec3, fresnel_dielectric};
 use crate::refusals::{material, refused};
+use crate::rendering::{Moments, difference, render};
 use crate::scene::AllEffects;
 use crate::stage::{camera_above, diffuse, object, scene, sphere};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "H23", tries: "roughness 0 against 1e-4, the smallest that is rough", run: roughness_zero },
-    Case { id: "H29", tries: "mirrors down to grazing angles: F alone and no cosine", run: grazing },
-];
+use crate::{Trials, critical};
 
 fn conductor(alpha: &str) -> String {
     format!("{{ conductor = {{ alpha = {alpha}, f0 = [1.0, 0.75, 0.25] }} }}")
@@ -24,7 +18,7 @@ fn conductor(alpha: &str) -> String {
 
 /// Roughness 0 gives a delta lobe and nothing to evaluate. Roughnesses between 0 and 1e-4 are refused. The images of
 /// 1e-4 and of 0 agree.
-fn roughness_zero(trials: &mut Trials) {
+pub(super) fn roughness_zero(trials: &mut Trials) {
     let gold = material(&conductor("0.0"));
     let wo = Vec3::new(0.6, 0.0, 0.8);
     let sample = gold.sample::<AllEffects>(wo, false, [0.3, 0.7]);
@@ -80,7 +74,7 @@ fn continuity(trials: &mut Trials) {
 }
 
 /// The weight is F, also where the second report's guard makes it 0. No material of the table divides by a cosine.
-fn grazing(trials: &mut Trials) {
+pub(super) fn grazing(trials: &mut Trials) {
     let mirror = material("{ fresnel-mirror = { eta = 12.85 } }");
     for cos in [1.0, 0.5, 0.001, 9.9e-4, 5e-4, 1e-8, 1e-300, 0.0] {
         let expected = fresnel_dielectric(cos, 12.85);

@@ -96,7 +96,6 @@ impl Moments {
         Self { mean, variance: squares / (samples - 1) as f64 }
     }
 
-    /// Standard error of the mean.
     pub(crate) fn standard_error(self, samples: u64) -> f64 {
         (self.variance / samples as f64).sqrt()
     }

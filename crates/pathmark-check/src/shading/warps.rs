@@ -1,24 +1,15 @@
-//! Warps from the unit square to directions and points: H03, H04, H05.
+//! Warps from the unit square to directions and points, and aims at lights, mapped to cells of equal probability: H03,
+//! H04, H05.
 
-use super::targets::{cones, triangles};
+use super::unguarded::crowded_triangle;
 use crate::analysis::chi_square::against;
-use crate::level::critical;
-use crate::math::{Vec3, dot};
+use crate::math::{Frame, Vec3, dot};
 use crate::sampling::{UNIFORM_SPHERE_DENSITY, concentric_disk, cosine_hemisphere, mix, tent, uniform_sphere, unit};
-use crate::{Case, Trials};
-use std::f64::consts::{FRAC_1_PI, PI};
+use crate::scene::{Scene, one_minus_cos};
+use crate::stage::{camera_above, diffuse, object, scene, sphere};
+use crate::{Trials, U, critical};
+use std::f64::consts::{FRAC_1_PI, PI, TAU};
 
-pub(super) const CASES: &[Case] = &[
-    Case { id: "H03", tries: "the cosine warp at 0, 2^-53, 1/2, 1 - 2^-53 and 1", run: cosine },
-    Case { id: "H04", tries: "the tent filter at its ends and its seam", run: tents },
-    Case {
-        id: "H05",
-        tries: "sphere, cone, disk, cosine, tent and triangle: the square's corners, and chi-square",
-        run: all,
-    },
-];
-
-const U: f64 = 0.5 * f64::EPSILON;
 const CORNERS: [f64; 5] = [0.0, U, 0.5, 1.0 - U, 1.0];
 
 fn corners() -> impl Iterator<Item = [f64; 2]> {
@@ -33,7 +24,7 @@ fn off(square: f64) -> f64 {
 
 /// The length is 1 within 4 roundings, and the direction is never below the horizon, also at 1, which no sampler
 /// returns. For values below 1 the density is above zero.
-fn cosine(trials: &mut Trials) {
+pub(super) fn cosine(trials: &mut Trials) {
     let worst = corners().map(cosine_hemisphere).map(|d| off(dot(d, d))).fold(0.0, f64::max);
     trials.at_most("length - 1, in roundings", 4.0, worst / U);
     let lowest = corners().map(cosine_hemisphere).map(|d| d.z).fold(f64::INFINITY, f64::min);
@@ -43,7 +34,7 @@ fn cosine(trials: &mut Trials) {
 }
 
 /// The argument of sqrt(2 - r) is never negative, and the tent is symmetric: its variance is 1/6.
-fn tents(trials: &mut Trials) {
+pub(super) fn tents(trials: &mut Trials) {
     for (u, expected) in [(0.0, -1.0), (0.125, -0.5), (0.5, 0.0), (0.875, 0.5), (1.0, 1.0)] {
         trials.close(format!("at {u}"), expected, tent(u), 0.0);
     }
@@ -104,7 +95,7 @@ const WARPS: [Warp; 4] = [
 const CELLS: usize = 64;
 
 /// Tests the corners, moments that a missing root would change, and chi-square on 64 x 64 cells of equal probability.
-fn all(trials: &mut Trials) {
+pub(super) fn all(trials: &mut Trials) {
     let sphere = |u: [f64; 2]| off(dot(uniform_sphere(u), uniform_sphere(u)));
     trials.at_most("sphere: length - 1, in roundings", 8.0, corners().map(sphere).fold(0.0, f64::max) / U);
     let disk = |u: [f64; 2]| concentric_disk(u).iter().map(|x| x * x).sum::<f64>();
@@ -150,4 +141,75 @@ fn moments(trials: &mut Trials) {
     ] {
         trials.close(name, expected, found, 1e-5);
     }
+}
+
+const AIM_CELLS: usize = 32;
+
+/// A scene with a single light to aim at.
+pub(super) fn lit(shape: &str) -> Scene {
+    let scene = scene(&[
+        "background = [0.0, 0.0, 0.0]\n".to_string(),
+        camera_above([0.0, 0.0, 4.0], [0.0; 3], 40.0),
+        object(shape, &diffuse(0.0), [1.0; 3]),
+    ]);
+    scene.lit(&scene.camera.view(8, 8))
+}
+
+/// Chi-square score of positions, with two coordinates from 0 to 1, against a uniform distribution over the square.
+fn score(samples: u64, place: impl Fn([f64; 2]) -> [f64; 2]) -> f64 {
+    let mut cells = vec![0.0; AIM_CELLS * AIM_CELLS];
+    for k in 0..samples {
+        let [row, column] = place([unit(mix(2 * k)), unit(mix(2 * k + 1))])
+            .map(|x| ((x * AIM_CELLS as f64) as usize).min(AIM_CELLS - 1));
+        cells[row * AIM_CELLS + column] += 1.0;
+    }
+    against(&cells, &vec![samples as f64 / cells.len() as f64; cells.len()])
+}
+
+/// Within the cone that a sphere subtends, heights are uniform, as on the whole sphere.
+fn cones(trials: &mut Trials) {
+    let scene = lit(&sphere([0.0; 3], 1.0));
+    let samples = trials.times(200_000, 20_000_000);
+    let limit = critical(4);
+    for distance in [1.001, 2.0, 100.0, 1e6] {
+        let axis = Vec3::new(0.36, 0.48, 0.8);
+        let frame = Frame::around(-axis);
+        let lights = scene.lights.as_ref().expect("a lit scene");
+        let place = |u: [f64; 2]| {
+            let aim = lights.aim(axis * distance, None, || 0.5, u);
+            let d = aim.map_or(Vec3::new(0.0, 0.0, -1.0), |aim| frame.to_local(aim.direction));
+            // 1 - z without cancellation.
+            let height = (d.x * d.x + d.y * d.y) / (1.0 + d.z) / one_minus_cos(1.0, distance);
+            [height, (libm::atan2(d.y, d.x) / TAU).rem_euclid(1.0)]
+        };
+        trials.deviates_below(
+            format!("cone of a sphere {distance} radii away: chi-square"),
+            limit,
+            score(samples, place),
+        );
+    }
+}
+
+/// Over the area of a triangle, the squared distance from a corner and the direction are uniform. Without the square
+/// root, points crowd at that corner.
+fn triangles(trials: &mut Trials) {
+    let corners = [[0.2, -0.3, 0.1], [1.5, 0.4, -0.2], [-0.1, 1.1, 0.6]];
+    let scene = lit(&format!("{{ triangle = {{ corners = {corners:?} }} }}"));
+    let lights = scene.lights.as_ref().expect("a lit scene");
+    let [a, b, c] = corners.map(Vec3::from);
+    let (point, normal) = (Vec3::new(0.3, 0.2, 3.0), (b - a).cross(c - a));
+    let place = |u: [f64; 2]| {
+        let direction = lights.aim(point, None, || 0.5, u).map_or(normal, |aim| aim.direction);
+        let at = point + direction * (dot(a - point, normal) / dot(direction, normal)) - a;
+        // The barycentric coordinates of the two other corners.
+        let [p, q] = [at.cross(c - a), (b - a).cross(at)].map(|part| dot(part, normal) / dot(normal, normal));
+        [(p + q) * (p + q), q / (p + q)]
+    };
+    let samples = trials.times(200_000, 20_000_000);
+    trials.deviates_below("triangle: chi-square", critical(1), score(samples, place));
+    let crowded = score(samples, |u| {
+        let [p, q] = crowded_triangle(u);
+        [(p + q) * (p + q), q / (p + q)]
+    });
+    trials.at_least("triangle without the root: chi-square", 20.0, crowded);
 }

@@ -1,17 +1,11 @@
 //! Very many rays compared with the exact answer, and rays across the silhouette in steps of one ulp.
 
-use super::exact::{Exact, U, is_first};
-use super::formulas::{FORMULAS, Formula};
-use super::unguarded::{smallpt_first_root, smallpt_roots};
-use crate::math::{Ray, Vec3, dot};
+use super::exact::{Exact, is_first};
+use super::formulas::{formula_hit, smallpt_first_root, smallpt_roots};
+use crate::math::{Ray, Vec3, dot, roots};
 use crate::random::Random;
 use crate::scene::{Primitive, Sphere};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "S29", tries: "rays at spheres of 1e-6 to 1e8, 1e-3 to 1e8 radii away", run: any_rays },
-    Case { id: "S30", tries: "rays one ulp apart across the silhouette: after the first miss no hit", run: silhouette },
-];
+use crate::{Trials, U};
 
 /// Origin relative to the centre, unit direction and radius, aimed so that hits, misses and near tangents of every
 /// degree all occur. Half of the rays take radius and distance from the catalogue's grid of powers of ten.
@@ -74,31 +68,29 @@ impl Tally {
     }
 }
 
-fn any_rays(trials: &mut Trials) {
+pub(super) fn any_rays(trials: &mut Trials) {
     let rays = trials.times(200_000, 100_000_000);
-    for formula in FORMULAS {
-        let (tally, smallpt) = compare(formula, rays);
-        let told = format!("0 outside of their bounds of {} hits", tally.hits);
-        let found = format!("{}, the worst at {:.3} of its bound", tally.outside, tally.worst);
-        trials.holds(format!("{}, roots", formula.name), told, found, tally.outside == 0);
-        trials.never(format!("{}, hit or miss", formula.name), "mistaken beyond the band", tally.beyond_band, rays);
-        trials.never(format!("{}, primitive", formula.name), "unlike its formula", tally.differs, rays);
-        // The rays must include many hits and misses, and few excused mistakes; otherwise the test proves little.
-        let (hits, misses, excused) = (tally.hits * 2, tally.misses * 20, tally.in_band * 100);
-        let kinds = format!("{} hits, {} misses, {} mistaken in the band", tally.hits, tally.misses, tally.in_band);
-        let told = "at least half are hits, 5 % misses; at most 1 % in the band";
-        trials.holds("the rays", told, kinds, hits > rays && misses > rays && excused < rays);
-        let found = format!(
-            "{} of {} outside, the worst {:.1e} times its bound; {} hits or misses mistaken beyond the band",
-            smallpt.outside, smallpt.hits, smallpt.worst, smallpt.beyond_band
-        );
-        let fails = smallpt.outside > 0 && smallpt.beyond_band > 0;
-        trials.holds("smallpt's formula", "outside, or these rays would prove nothing", found, fails);
-    }
+    let (tally, smallpt) = compare(rays);
+    let told = format!("0 outside of their bounds of {} hits", tally.hits);
+    let found = format!("{}, the worst at {:.3} of its bound", tally.outside, tally.worst);
+    trials.holds("f64, roots", told, found, tally.outside == 0);
+    trials.never("f64, hit or miss", "mistaken beyond the band", tally.beyond_band, rays);
+    trials.never("f64, primitive", "unlike its formula", tally.differs, rays);
+    // The rays must include many hits and misses, and few excused mistakes; otherwise the test proves little.
+    let (hits, misses, excused) = (tally.hits * 2, tally.misses * 20, tally.in_band * 100);
+    let kinds = format!("{} hits, {} misses, {} mistaken in the band", tally.hits, tally.misses, tally.in_band);
+    let told = "at least half are hits, 5 % misses; at most 1 % in the band";
+    trials.holds("the rays", told, kinds, hits > rays && misses > rays && excused < rays);
+    let found = format!(
+        "{} of {} outside, the worst {:.1e} times its bound; {} hits or misses mistaken beyond the band",
+        smallpt.outside, smallpt.hits, smallpt.worst, smallpt.beyond_band
+    );
+    let fails = smallpt.outside > 0 && smallpt.beyond_band > 0;
+    trials.holds("smallpt's formula", "outside, or these rays would prove nothing", found, fails);
 }
 
 /// Tallies of so many rays: of the formula and, for directions of length 1, of smallpt's formula.
-fn compare(formula: &Formula, rays: u64) -> (Tally, Tally) {
+fn compare(rays: u64) -> (Tally, Tally) {
     let mut random = Random::new(0x5EED);
     let (mut tally, mut smallpt) = (Tally::default(), Tally::default());
     for k in 0..rays {
@@ -107,8 +99,8 @@ fn compare(formula: &Formula, rays: u64) -> (Tally, Tally) {
         let d = if stretched { unit * random.scale(-3.0, 3.0) } else { unit };
         let a = if stretched { dot(d, d) } else { 1.0 };
         let exact = Exact::of(f, d, r);
-        let first = formula.hit(f, d, a, r);
-        tally.add(&exact, (f, d, r), (formula.roots)(f, d, a, r), first);
+        let first = formula_hit(f, d, a, r);
+        tally.add(&exact, (f, d, r), roots(f, d, a, r), first);
         if !stretched {
             let sphere = Sphere { center: Vec3::new(0.0, 0.0, 0.0), radius: r };
             let met = Some(sphere.meet(&Ray { origin: f, direction: d }, &())).filter(|t| *t > 0.0);
@@ -121,29 +113,27 @@ fn compare(formula: &Formula, rays: u64) -> (Tally, Tally) {
 }
 
 /// Rays parallel to an axis must be right at every ulp, tilted rays outside of the band.
-fn silhouette(trials: &mut Trials) {
+pub(super) fn silhouette(trials: &mut Trials) {
     let ulps = trials.times(1 << 20, 1 << 24) as i64;
-    for formula in FORMULAS {
-        let misses = |f: Vec3, d: Vec3| (formula.roots)(f, d, 1.0, 1.0).0.is_nan();
-        let axis = Vec3::new(1.0, 0.0, 0.0);
-        let wrong = (-ulps / 2..ulps / 2).filter(|k| {
-            let y = f64::from_bits((1.0_f64.to_bits() as i64 + k) as u64);
-            misses(Vec3::new(-2.0, y, 0.0), axis) != (*k > 0)
-        });
-        trials.never(format!("{}, along an axis", formula.name), "wrong", wrong.count() as u64, ulps as u64);
-        let (mut wrong, mut tried) = (0, 0);
-        let mut random = Random::new(0x530);
-        for _ in 0..ulps / 1024 {
-            let along = random.direction();
-            let across = along.cross(random.direction()).normalized();
-            for step in 0..20 {
-                for side in [-1.0, 1.0] {
-                    let y = 1.0 + side * 64.0 * U * f64::from(1 << step);
-                    wrong += u64::from(misses(across * y - along * 3.0, along) != (side > 0.0));
-                    tried += 1;
-                }
+    let misses = |f: Vec3, d: Vec3| roots(f, d, 1.0, 1.0).0.is_nan();
+    let axis = Vec3::new(1.0, 0.0, 0.0);
+    let wrong = (-ulps / 2..ulps / 2).filter(|k| {
+        let y = f64::from_bits((1.0_f64.to_bits() as i64 + k) as u64);
+        misses(Vec3::new(-2.0, y, 0.0), axis) != (*k > 0)
+    });
+    trials.never("f64, along an axis", "wrong", wrong.count() as u64, ulps as u64);
+    let (mut wrong, mut tried) = (0, 0);
+    let mut random = Random::new(0x530);
+    for _ in 0..ulps / 1024 {
+        let along = random.direction();
+        let across = along.cross(random.direction()).normalized();
+        for step in 0..20 {
+            for side in [-1.0, 1.0] {
+                let y = 1.0 + side * 64.0 * U * f64::from(1 << step);
+                wrong += u64::from(misses(across * y - along * 3.0, along) != (side > 0.0));
+                tried += 1;
             }
         }
-        trials.never(format!("{}, tilted, from 64 ulp on", formula.name), "wrong", wrong, tried);
     }
+    trials.never("f64, tilted, from 64 ulp on", "wrong", wrong, tried);
 }

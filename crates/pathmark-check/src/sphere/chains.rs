@@ -1,26 +1,17 @@
 //! Paths that end at the first vertex, and paths that never end.
 
-use super::walk::scatter;
+use super::short_ways::scatter;
+use crate::Trials;
 use crate::bare_scene::{intersect, searches};
 use crate::estimator::ESTIMATORS;
 use crate::kernel::Spec;
 use crate::math::{Ray, Vec3, dot};
-use crate::rendering::{by_kernel, render};
+use crate::rendering::{by_kernel, try_render};
 use crate::stage::{ANY_CAMERA, MIRROR, ball, named, try_scene};
-use crate::{Case, Trials};
 use std::sync::Arc;
 
-pub(super) const CASES: &[Case] = &[
-    Case { id: "S63", tries: "black walls: their survival is 0, and every path ends at the first", run: black_walls },
-    Case {
-        id: "S64",
-        tries: "1e4 mirror bounces in a sphere of 1e5: the direction keeps its length",
-        run: mirror_chain,
-    },
-];
-
 /// A black room that glows: its radiance is exactly 1, and each path needs one ray only.
-fn black_walls(trials: &mut Trials) {
+pub(super) fn black_walls(trials: &mut Trials) {
     let room = named(
         "room",
         "{ sphere = { center = [0.0, 0.0, 0.0], radius = 9.0 } }",
@@ -33,7 +24,7 @@ fn black_walls(trials: &mut Trials) {
         for roulette in rules.into_iter().filter(|rule| rule.is_none() || estimator.roulette.is_some()) {
             let spec = Spec { width: 8, height: 6, estimator: estimator.name.into(), roulette, ..Spec::default() };
             for spec in by_kernel(&spec) {
-                let Some(outcome) = render(trials, &scene, spec.clone(), 4) else { continue };
+                let Some(outcome) = try_render(trials, &scene, spec.clone(), 4) else { continue };
                 let (counts, spp) = (outcome.counts, f64::from(outcome.spp));
                 let are_one = outcome.film.pixels().iter().all(|pixel| pixel.sum == [spp; 3]);
                 let rule = spec.roulette.as_deref().unwrap_or("its own rule");
@@ -48,7 +39,7 @@ fn black_walls(trials: &mut Trials) {
 
 /// Without renormalising, |d| must stay 1 within 1e-12. With it, as in paths, every chord is as long as the first: 2 r
 /// cos.
-fn mirror_chain(trials: &mut Trials) {
+pub(super) fn mirror_chain(trials: &mut Trials) {
     let parts = [ANY_CAMERA.to_string(), ball("room", [50.0, 40.8, 81.6], 1e5, MIRROR)];
     let room = try_scene(&parts).expect("a right scene");
     for (name, scene) in searches(&room) {

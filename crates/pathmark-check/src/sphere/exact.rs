@@ -5,11 +5,9 @@
 //! As in [`crate::math::roots`], `f` is the ray's origin relative to the centre, `d` its direction of any length, `r`
 //! the radius.
 
+use crate::U;
 use crate::double_double::{Dd, two_product};
 use crate::math::{Vec3, dot};
-
-/// The rounding unit.
-pub(crate) const U: f64 = f64::EPSILON / 2.0;
 
 /// The intersection of a line with a sphere.
 pub(crate) struct Exact {

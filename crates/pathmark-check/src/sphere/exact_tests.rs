@@ -1,8 +1,9 @@
 //! The double-double oracle compared with exact integers, on 1e4 of the rays that it judges.
 
 use super::bulk::aimed;
-use super::exact::{Exact, U};
-use crate::fixed_point::{UNIT, cross, dot, fixed, fixed_vector};
+use super::exact::Exact;
+use crate::U;
+use crate::fixed_point_tests::{UNIT, cross, dot, fixed, fixed_vector};
 use crate::random::Random;
 use num_bigint::{BigInt, Sign};
 

@@ -1,31 +1,18 @@
 //! Closed scenes that lose no ray, and lights that do not block themselves.
 
-use super::unguarded::{SMALLPT_EPSILON, smallpt_first_root};
+use super::formulas::{SMALLPT_EPSILON, smallpt_first_root};
+use crate::Trials;
 use crate::bare_scene::{intersect, searches};
 use crate::estimator::ESTIMATORS;
 use crate::kernel::Spec;
 use crate::math::{Ray, Vec3};
 use crate::random::Random;
-use crate::rendering::{by_kernel, render};
+use crate::rendering::{by_kernel, try_render};
 use crate::scene::{Scene, SurfaceOrigin, load};
 use crate::stage::{DIFFUSE, camera, named, try_scene};
-use crate::{Case, Trials};
 use std::sync::Arc;
 
-pub(super) const CASES: &[Case] = &[
-    Case {
-        id: "S42",
-        tries: "smallpt's closed box: no ray meets nothing, none passes behind an edge",
-        run: closed_box,
-    },
-    Case {
-        id: "S45",
-        tries: "rays at lights of radius 600 and 0.005: none is stopped by the light itself",
-        run: lights,
-    },
-];
-
-fn closed_box(trials: &mut Trials) {
+pub(super) fn closed_box(trials: &mut Trials) {
     let most = trials.times(400_000, 100_000_000);
     let cornell = load("cornell").expect("a shipped scene");
     let equilibrium = Arc::new(cornell.in_equilibrium());
@@ -46,7 +33,7 @@ fn rays_that_escape(trials: &mut Trials, scene: &Arc<Scene>, what: &str, spec: &
     while rays < most {
         seed += 1;
         let spp = if most > 10_000_000 { 256 } else { 4 };
-        let Some(outcome) = render(trials, scene, Spec { seed, ..spec.clone() }, spp) else { return };
+        let Some(outcome) = try_render(trials, scene, Spec { seed, ..spec.clone() }, spp) else { return };
         rays += outcome.counts.rays;
         lost += outcome.counts.escaped + outcome.counts.invalid;
     }
@@ -95,7 +82,7 @@ fn edges(trials: &mut Trials) {
 }
 
 /// A ray that is aimed at a light must hit it, whatever the size of the light, and nothing nearer may block it.
-fn lights(trials: &mut Trials) {
+pub(super) fn lights(trials: &mut Trials) {
     let rays = trials.times(20_000, 2_000_000);
     for (radius, height, across) in [(600.0, 681.33, 100.0), (0.005, 0.0051, 0.1), (0.005, 50.0, 100.0)] {
         let light = format!("{{ sphere = {{ center = [0.0, {height:?}, 0.0], radius = {radius:?} }} }}");

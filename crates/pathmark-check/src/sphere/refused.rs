@@ -1,20 +1,12 @@
 //! Spheres that the scene reader refuses, because their squares leave the range of f64 or they have no normal.
 
-use super::exact::U;
 use super::formulas::first_hits;
 use crate::math::Vec3;
 use crate::refusals::refuses_shape;
 use crate::stage::{ANY_CAMERA, DIFFUSE, ball, try_scene};
-use crate::{Case, Trials};
+use crate::{Trials, U};
 
-pub(super) const CASES: &[Case] = &[
-    Case { id: "S24", tries: "radius 0, whose normal is 0/0", run: |trials| radii(trials, &["0.0", "-0.0"]) },
-    Case { id: "S25", tries: "a negative radius, which its square hides", run: |trials| radii(trials, &["-1.0"]) },
-    Case { id: "S26", tries: "radii whose square is 0 or no number; the smallest that is read", run: small_radii },
-    Case { id: "S27", tries: "radii and coordinates whose squares overflow; the largest that are read", run: large },
-];
-
-fn radii(trials: &mut Trials, radii: &[&str]) {
+pub(super) fn radii(trials: &mut Trials, radii: &[&str]) {
     for radius in radii {
         let shape = format!("{{ sphere = {{ center = [5.0, 0.0, 0.0], radius = {radius} }} }}");
         refuses_shape(trials, &shape, "radius", radius);
@@ -35,12 +27,12 @@ fn is_read_and_met(trials: &mut Trials, center: [f64; 3], radius: f64, away: f64
     }
 }
 
-fn small_radii(trials: &mut Trials) {
+pub(super) fn small_radii(trials: &mut Trials) {
     radii(trials, &["5e-324", "1e-310", "9.9e-101", "nan", "inf", "-inf"]);
     is_read_and_met(trials, [0.0; 3], 1e-100, 3.0);
 }
 
-fn large(trials: &mut Trials) {
+pub(super) fn large(trials: &mut Trials) {
     radii(trials, &["1e200", "1.1e100"]);
     for (center, value) in [("1e160, 0.0, 0.0", "1e160"), ("0.0, 0.0, -1.1e100", "-1.1e100"), ("nan, 0.0, 0.0", "nan")]
     {

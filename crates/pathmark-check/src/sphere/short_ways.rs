@@ -1,25 +1,14 @@
 //! Distances shorter than any usual epsilon: inside tiny balls, and along the surfaces of large ones.
 
-use super::exact::U;
-use super::unguarded::{SMALLPT_EPSILON, smallpt_first_root};
-use super::walk::scatter;
+use super::formulas::{SMALLPT_EPSILON, smallpt_first_root};
 use crate::bare_scene::{intersect, searches};
+use crate::material::Material;
 use crate::math::{Frame, Ray, Vec3};
 use crate::random::Random;
-use crate::scene::{Scene, SurfaceOrigin};
+use crate::scene::{AllEffects, Hit, Scene, SurfaceOrigin};
 use crate::stage::{ANY_CAMERA, DIFFUSE, GLASS, ball, try_scene};
-use crate::{Case, Trials};
+use crate::{Trials, U};
 use std::f64::consts::TAU;
-
-pub(super) const CASES: &[Case] = &[
-    Case {
-        id: "S40",
-        tries: "glass balls smaller than an epsilon: the same walk in radii as in a big one",
-        run: tiny_glass,
-    },
-    Case { id: "S43", tries: "chords inside glass, however flat and short", run: chords_in_glass },
-    Case { id: "S44", tries: "chords of smallpt's walls that are shorter than its epsilon", run: chords_of_walls },
-];
 
 /// A glass ball in the centre of a dark one.
 fn glass(center: [f64; 3], radius: f64, around: f64) -> Scene {
@@ -43,7 +32,7 @@ fn walk(scene: &Scene, radius: f64, [turn, place]: [f64; 2]) -> Option<[f64; 4]>
     Some(lengths)
 }
 
-fn tiny_glass(trials: &mut Trials) {
+pub(super) fn tiny_glass(trials: &mut Trials) {
     let rays = trials.times(10_000, 1_000_000);
     let big = glass([0.0; 3], 16.5, 165.0);
     for radius in [4e-5, 1e-6] {
@@ -101,7 +90,7 @@ fn chords(
     }
 }
 
-fn chords_in_glass(trials: &mut Trials) {
+pub(super) fn chords_in_glass(trials: &mut Trials) {
     for radius in [16.5, 4e-5, 1e-6] {
         let scene = glass([73.0, 40.0, 78.0], radius, 1e5);
         let center = Vec3::new(73.0, 40.0, 78.0);
@@ -113,10 +102,21 @@ fn chords_in_glass(trials: &mut Trials) {
 
 /// A cosine law gives such short chords once in 4e18 bounces, so smallpt's epsilon does no harm here. This says
 /// nothing about smaller spheres.
-fn chords_of_walls(trials: &mut Trials) {
+pub(super) fn chords_of_walls(trials: &mut Trials) {
     let parts = [ANY_CAMERA.into(), ball("left wall", [100_001.0, 40.8, 81.6], 1e5, DIFFUSE)];
     let scene = try_scene(&parts).expect("a right scene");
     let wall = (Vec3::new(100_001.0, 40.8, 81.6), 1e5);
     // A coordinate of 2e5 is rounded at 2^-36, and enters the chord twice.
     chords(trials, &scene, wall, 8.0 * U * 2e5, |random| random.scale(-9.3, -6.0));
+}
+
+/// The next ray segment and its standpoint, for a ray that arrives along `direction`. `u` chooses the lobe. The new
+/// direction is not normalised.
+pub(super) fn scatter(scene: &Scene, hit: &Hit, direction: Vec3, u: f64) -> (Ray, SurfaceOrigin) {
+    let frame = hit.frame();
+    let material: &Material = &scene.objects[hit.object as usize].material;
+    let sample = material.sample::<AllEffects>(frame.to_local(-direction), hit.inside, [u, 0.5]);
+    let wi = sample.expect("nothing here absorbs").wi;
+    let inside = (wi.z < 0.0) != hit.inside;
+    (Ray { origin: hit.point, direction: frame.to_world(wi) }, SurfaceOrigin { primitive: hit.primitive, inside })
 }

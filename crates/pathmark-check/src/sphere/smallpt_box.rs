@@ -1,22 +1,12 @@
 //! The edges between the spheres of smallpt's box, and the starts of its camera rays. Two surfaces cross at 1.7
 //! degrees, so an error e in a distance moves the edge between them by 33 e.
 
+use crate::Trials;
 use crate::bare_scene::{intersect, searches};
 use crate::math::{Frame, Ray, Vec3, dot};
 use crate::random::Random;
 use crate::scene::{AllEffects, Hit, Scene, SurfaceOrigin, load};
-use crate::{Case, Trials};
 use std::f64::consts::TAU;
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "S60", tries: "the light's sphere ends where it cuts the ceiling's", run: light_cap },
-    Case {
-        id: "S61",
-        tries: "the balls sink into the curved floor: glass ends at the floor, not in air",
-        run: sunken_balls,
-    },
-    Case { id: "S62", tries: "camera rays start inside the box, at the rims of the filter too", run: camera_rays },
-];
 
 /// Distance from the exact circle within which surfaces may be mistaken for each other.
 const BAND: f64 = 1e-8;
@@ -34,7 +24,7 @@ fn distance(random: &mut Random, circle: f64) -> f64 {
     }
 }
 
-fn light_cap(trials: &mut Trials) {
+pub(super) fn light_cap(trials: &mut Trials) {
     const CIRCLE: f64 = 17.944_246_733_607_267;
     let rays = trials.times(100_000, 1_000_000);
     let cornell = load("cornell").expect("a shipped scene");
@@ -68,7 +58,7 @@ const BALLS: [(&str, [f64; 3], f64, f64); 2] = [
     ("glass ball", [73.0, 16.5, 78.0], 0.299_074_517_033, 0.002_710_247_154_05),
 ];
 
-fn sunken_balls(trials: &mut Trials) {
+pub(super) fn sunken_balls(trials: &mut Trials) {
     let rays = trials.times(30_000, 1_000_000);
     let cornell = load("cornell").expect("a shipped scene");
     let floor = Vec3::new(50.0, 1e5, 81.6);
@@ -102,7 +92,7 @@ fn sunken_balls(trials: &mut Trials) {
     }
 }
 
-fn camera_rays(trials: &mut Trials) {
+pub(super) fn camera_rays(trials: &mut Trials) {
     let cornell = load("cornell").expect("a shipped scene");
     let almost_one = 1.0 - f64::EPSILON / 2.0;
     let corners = [[0.0, 0.0], [almost_one, 0.0], [0.0, almost_one], [almost_one, almost_one], [0.5, 0.5]];

@@ -1,25 +1,15 @@
 //! Rays that start on a surface. The program moves no origin and has no epsilon: a ray remembers the primitive and the side that it leaves.
 
-use super::exact::U;
 use crate::bare_scene::{intersect, scene_of, scene_of_spheres, searches};
 use crate::math::{Ray, Vec3, dot};
 use crate::meshes::star;
 use crate::random::Random;
 use crate::scene::{Plane, Primitives, Scene, Sphere, SurfaceOrigin, Triangle};
-use crate::{Case, Trials};
+use crate::{Trials, U};
 use std::collections::BTreeMap;
 
-pub(super) const CASES: &[Case] = &[
-    Case {
-        id: "S46",
-        tries: "rays that leave spheres of 1e-6 to 1e8 and convex meshes: they meet nothing of them",
-        run: leaving,
-    },
-    Case { id: "S47", tries: "points at which an offset of the origin would change sign or size", run: awkward_points },
-];
-
 /// A ray that leaves a sphere outwards must not hit it again. A ray that leaves it inwards must hit it after a chord.
-fn leaving(trials: &mut Trials) {
+pub(super) fn leaving(trials: &mut Trials) {
     let spheres = trials.times(60, 10_000);
     let rays = spheres * 1000;
     let mut random = Random::new(46);
@@ -94,7 +84,7 @@ fn pairs(x: f64, gap: f64) -> [(&'static str, Scene); 3] {
 /// The offset of Wächter and Binder (Ray Tracing Gems, 2019, ch. 6) changes its rule at 1/32 and adds integers to the
 /// bits of coordinates: at 0 the sign flips. Here a ray starts where the last one ended, so these points are not
 /// special, and a surface nearer than any offset is hit.
-fn awkward_points(trials: &mut Trials) {
+pub(super) fn awkward_points(trials: &mut Trials) {
     let limit = 1.0_f64 / 32.0;
     let points = [0.0, limit, limit.next_down(), limit.next_up(), 5e-324, 1.0, 3.0];
     let mut tallies: BTreeMap<String, (u64, u64)> = BTreeMap::new();
@@ -117,5 +107,29 @@ fn awkward_points(trials: &mut Trials) {
     }
     for (variant, (wrong, tried)) in tallies {
         trials.never(variant, "own surfaces met or second ones missed", wrong, tried);
+    }
+}
+
+pub(super) fn nearest_then_lowest(trials: &mut Trials) {
+    let concentric = |radii: &[f64]| {
+        let sphere = |radius: &f64| Sphere { center: Vec3::new(0.0, 0.0, 0.0), radius: *radius };
+        scene_of_spheres(radii.iter().map(sphere).collect())
+    };
+    let thin = concentric(&[1.0, 1.0 + libm::exp2(-40.0)]);
+    let identical = concentric(&[0.5, 1.0, 1.0, 1.0]);
+    let rays = trials.times(1000, 1_000_000);
+    for (what, scene, from_outside, from_inside) in [("thin shell", thin, 1, 0), ("identical", identical, 1, 1)] {
+        for (name, scene) in searches(&scene) {
+            let mut random = Random::new(48);
+            let seen = |scene: &Scene, ray: &Ray| intersect(scene, ray, None).map(|hit| hit.primitive);
+            let wrong = (0..rays).filter(|_| {
+                let out = random.direction();
+                let inwards = Ray { origin: out * 3.0, direction: -out };
+                let outwards = Ray { origin: out * 0.9, direction: out };
+                (seen(&scene, &inwards), seen(&scene, &outwards)) != (Some(from_outside), Some(from_inside))
+            });
+            let wrong = wrong.count() as u64;
+            trials.never(format!("{what}, accelerator {name}"), "another sphere than the first", wrong, rays);
+        }
     }
 }

@@ -1,70 +1,28 @@
 //! Rays with exact answers: along the silhouette, from the surface, from the centre, and with invalid directions.
 
-use super::exact::U;
-use super::formulas::first_hits;
-use super::unguarded::smallpt_first_root;
+use super::formulas::{first_hits, smallpt_first_root};
 use crate::math::Vec3;
-use crate::{Case, Trials};
+use crate::{Trials, U};
 
-pub(super) const CASES: &[Case] = &[
-    Case {
-        id: "S11",
-        tries: "a tangent: the sphere is closed",
-        run: |trials| same(trials, [-2.0, 1.0, 0.0], FORWARD, Some(2.0)),
-    },
-    Case { id: "S12", tries: "one ulp outside of the tangent, which smallpt hits", run: beside_the_tangent },
-    Case {
-        id: "S13",
-        tries: "one ulp inside of the tangent: the roots do not merge",
-        run: |trials| same(trials, [-2.0, 1.0 - U, 0.0], FORWARD, Some(1.999_999_985_098_838_8)),
-    },
-    Case { id: "S14", tries: "from the surface outwards", run: |trials| same(trials, [1.0, 0.0, 0.0], FORWARD, None) },
-    Case {
-        id: "S15",
-        tries: "from the surface inwards",
-        run: |trials| same(trials, [1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], Some(2.0)),
-    },
-    Case {
-        id: "S16",
-        tries: "from the surface along it",
-        run: |trials| same(trials, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], None),
-    },
-    Case { id: "S17", tries: "from the centre, in directions along axes and any", run: from_the_centre },
-    Case { id: "S18", tries: "a sphere behind", run: |trials| same(trials, [2.0, 0.0, 0.0], FORWARD, None) },
-    Case {
-        id: "S21",
-        tries: "a direction whose square underflows: outside of what is promised, so no hit, and no wrong one",
-        run: |trials| same(trials, BESIDE, [1e-200, 0.0, 0.0], None),
-    },
-    Case { id: "S22", tries: "a direction whose square overflows, likewise; smallpt hits at infinity", run: too_long },
-    Case { id: "S23", tries: "directions and origins that are zero, NaN or infinite", run: no_numbers },
-    Case { id: "S28", tries: "a sphere 1e21 away, beyond the reports' infinity of 1e20", run: beyond_the_sentinel },
-    Case {
-        id: "S31",
-        tries: "from within, where one root is behind",
-        run: |trials| same(trials, [0.5, 0.0, 0.0], FORWARD, Some(0.5)),
-    },
-];
-
-const FORWARD: [f64; 3] = [1.0, 0.0, 0.0];
-const BESIDE: [f64; 3] = [-5.0, 0.25, 0.0];
+pub(super) const FORWARD: [f64; 3] = [1.0, 0.0, 0.0];
+pub(super) const BESIDE: [f64; 3] = [-5.0, 0.25, 0.0];
 const ORIGIN: Vec3 = Vec3::new(0.0, 0.0, 0.0);
 
 /// Checks a ray at the unit sphere around the origin, whose answer is known to the bit.
-fn same(trials: &mut Trials, origin: [f64; 3], direction: [f64; 3], expected: Option<f64>) {
+pub(super) fn same(trials: &mut Trials, origin: [f64; 3], direction: [f64; 3], expected: Option<f64>) {
     for (way, found) in first_hits(Vec3::from(origin), Vec3::from(direction), ORIGIN, 1.0) {
         trials.same(format!("{way}, from {origin:?} along {direction:?}"), &expected, &found);
     }
 }
 
-fn beside_the_tangent(trials: &mut Trials) {
+pub(super) fn beside_the_tangent(trials: &mut Trials) {
     let origin = [-2.0, 1.0 + 2.0 * U, 0.0];
     same(trials, origin, FORWARD, None);
     let smallpt = smallpt_first_root(Vec3::from(origin), Vec3::from(FORWARD), 1.0, 0.0);
     trials.holds("smallpt's formula", "a false hit, or this ray would prove nothing", smallpt, smallpt > 0.0);
 }
 
-fn from_the_centre(trials: &mut Trials) {
+pub(super) fn from_the_centre(trials: &mut Trials) {
     for direction in [FORWARD, [0.0, 0.0, -1.0], [-0.0, 1.0, 0.0], [0.6, 0.8, 0.0], [0.48, -0.6, 0.64]] {
         for radius in [1.0, 1e-90, 1e90] {
             for (way, found) in first_hits(ORIGIN, Vec3::from(direction), ORIGIN, radius) {
@@ -75,14 +33,14 @@ fn from_the_centre(trials: &mut Trials) {
     }
 }
 
-fn too_long(trials: &mut Trials) {
+pub(super) fn too_long(trials: &mut Trials) {
     let direction = [1e200, 0.0, 0.0];
     same(trials, BESIDE, direction, None);
     let smallpt = smallpt_first_root(Vec3::from(BESIDE), Vec3::from(direction), 1.0, 0.0);
     trials.same("smallpt's formula, or this ray would prove nothing", &f64::INFINITY, &smallpt);
 }
 
-fn no_numbers(trials: &mut Trials) {
+pub(super) fn no_numbers(trials: &mut Trials) {
     same(trials, BESIDE, [0.0; 3], None);
     same(trials, [0.0; 3], [0.0; 3], None);
     for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
@@ -95,7 +53,7 @@ fn no_numbers(trials: &mut Trials) {
     }
 }
 
-fn beyond_the_sentinel(trials: &mut Trials) {
+pub(super) fn beyond_the_sentinel(trials: &mut Trials) {
     for (way, found) in first_hits(Vec3::new(-1e21, 0.0, 0.0), Vec3::from(FORWARD), ORIGIN, 1.0) {
         trials.close(way, 1e21, found.unwrap_or(f64::NAN), 8.0 * U * 1e21);
     }

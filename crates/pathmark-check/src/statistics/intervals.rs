@@ -1,6 +1,7 @@
 //! Coverage of confidence intervals.
 
 use super::draw::Draw;
+use crate::Trials;
 use crate::analysis::aa_test::{Comparison, Verdict, calibration};
 use crate::analysis::mean::{t_interval, t_quantile};
 use crate::analysis::mse::over_seeds;
@@ -9,13 +10,6 @@ use crate::analysis::z_test::{critical_value, sidak};
 use crate::exact::critical;
 use crate::measure::{Settings, Setup};
 use crate::strategy::STRATEGIES;
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "M06", tries: "intervals of the RMSE over seeds", run: over_few_seeds },
-    Case { id: "M09", tries: "many comparisons at once, of equal work", run: many_comparisons },
-    Case { id: "M10", tries: "the median's interval from order statistics", run: of_the_median },
-];
 
 /// Compares a share of hits with the catalogue's value. That is a simulation result, too, which `slack` allows for.
 fn agrees(trials: &mut Trials, what: String, stated: f64, hits: u64, runs: u64, slack: f64) {
@@ -26,7 +20,7 @@ fn agrees(trials: &mut Trials, what: String, stated: f64, hits: u64, runs: u64, 
 
 /// Log-normal squared errors of mean 1: the plain t-interval has the catalogue's coverage, which is too low where
 /// seeds scatter. The interval in use covers 95 +- 1.5 % there, too.
-fn over_few_seeds(trials: &mut Trials) {
+pub(super) fn over_few_seeds(trials: &mut Trials) {
     let runs = trials.times(6_000, 100_000);
     let mut draw = Draw::new(6);
     for (variation, seeds, stated) in [
@@ -60,7 +54,7 @@ fn over_few_seeds(trials: &mut Trials) {
 
 /// Twenty equal strategies: at 5 % each, one of them seems better in 64 of 100 studies; at Sidak's level in 5. The
 /// compared strategies do the same work.
-fn many_comparisons(trials: &mut Trials) {
+pub(super) fn many_comparisons(trials: &mut Trials) {
     let runs = trials.times(4_000, 100_000);
     let mut draw = Draw::new(9);
     let levels = [0.05, sidak(0.05, 20).unwrap_or(f64::NAN)];
@@ -99,7 +93,7 @@ fn many_comparisons(trials: &mut Trials) {
 }
 
 /// Checks ranks and level against the binomial distribution, and the coverage of the median of skewed values.
-fn of_the_median(trials: &mut Trials) {
+pub(super) fn of_the_median(trials: &mut Trials) {
     for (n, rank, level) in [
         (5, 1, 0.9375),
         (6, 1, 0.968_75),

@@ -1,18 +1,11 @@
 //! Errors against noisy references. The test has N samples a pixel with deviation 1, the reference M.
 
 use super::draw::Draw;
+use crate::Trials;
 use crate::analysis::fit::log_log;
 use crate::exact::critical;
 use crate::image_io::Image;
 use crate::metric::{self, bias_squared, cross_mse};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "M01", tries: "the error against an independent reference", run: independent },
-    Case { id: "M02", tries: "how many samples a reference needs", run: enough },
-    Case { id: "M03", tries: "the cross form of two half-references", run: cross },
-    Case { id: "M08", tries: "errors of linear values and of what a display shows", run: linear },
-];
 
 fn value(name: &str, test: &Image, reference: &Image) -> f64 {
     metric::find(name).expect("a metric").compute(test, reference).expect("pictures of one size")
@@ -29,7 +22,7 @@ pub(super) fn slope(mse: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// E[MSE] = bias^2 + 1/N + 1/M: the reference's noise bends the slope of convergence.
-fn independent(trials: &mut Trials) {
+pub(super) fn independent(trials: &mut Trials) {
     let side = trials.times(128, 1024) as u32;
     let mut draw = Draw::new(1);
     for (n, m, bias) in [(16.0, 4.0, 0.0), (16.0, 16.0, 0.0), (16.0, 64.0, 0.1), (4.0, 400.0, 0.5)] {
@@ -54,7 +47,7 @@ fn independent(trials: &mut Trials) {
 /// The RMSE is too large by the share d if M = N/((1 + d)^2 - 1). Both compared errors contain the noise of the test,
 /// so that mainly the reference's noise is left. The ratio of the squares has the variance 4 (N/M)/P + 2 (N/M)^2/P
 /// over P values.
-fn enough(trials: &mut Trials) {
+pub(super) fn enough(trials: &mut Trials) {
     let side = trials.times(192, 1024) as u32;
     let mut draw = Draw::new(2);
     for (inflation, times) in [(0.10, 4.76), (0.05, 9.76), (0.02, 24.8), (0.01, 49.8), (0.001, 499.8)] {
@@ -78,7 +71,7 @@ fn enough(trials: &mut Trials) {
 
 /// N = 16, M = 64, bias 0.01: the truth is 0.0626. One reference gives 0.0782, two give the truth, and two tests with
 /// them give the bias alone.
-fn cross(trials: &mut Trials) {
+pub(super) fn cross(trials: &mut Trials) {
     let side = trials.times(192, 2048) as u32;
     let mut draw = Draw::new(3);
     for (n, m, bias) in [(16.0, 64.0, 0.01), (16.0, 4.0, 0.01), (16.0, 64.0, 0.3)] {
@@ -105,7 +98,7 @@ fn cross(trials: &mut Trials) {
 
 /// Linear values keep the light that a display clips: white against a sun of 50 has the error 49 in linear values and
 /// 0 on a display. Above white the linear squared error falls as 1/N, and the displayed error vanishes long before.
-fn linear(trials: &mut Trials) {
+pub(super) fn linear(trials: &mut Trials) {
     let mut draw = Draw::new(8);
     let (white, sun) = (draw.picture(16, 1.0, 0.0), draw.picture(16, 50.0, 0.0));
     trials.close("rmse of a sun", 49.0, value("rmse", &sun, &white), 1e-12);

@@ -2,6 +2,7 @@
 
 use super::draw::Draw;
 use super::references::slope;
+use crate::Trials;
 use crate::analysis::z_test::two_sided_p;
 use crate::estimator;
 use crate::exact::{critical, run};
@@ -13,12 +14,6 @@ use crate::lab::Lab;
 use crate::measure::{LARGEST_SEED, Settings};
 use crate::metric::{self, bias_squared};
 use crate::scene::load;
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "M04", tries: "samples that an image shares with its reference", run: shared_samples },
-    Case { id: "M05", tries: "a reference by the image's own estimator", run: shared_bias },
-];
 
 fn film(seed: u64, estimator: &str, max_depth: Option<u16>, spp: u32) -> Film {
     let scene = load("cornell").expect("a shipped scene");
@@ -44,7 +39,7 @@ fn correlation(a: &Film, b: &Film, truth: &Film) -> f64 {
 
 /// The first N of M samples differ from all of them by sqrt(1/N - 1/M): too little, and by nothing at N = M. So
 /// references have seeds that no image can have, and the noise of images with different seeds is independent.
-fn shared_samples(trials: &mut Trials) {
+pub(super) fn shared_samples(trials: &mut Trials) {
     let (side, m) = (trials.times(96, 512) as u32, 64.0);
     let mut draw = Draw::new(4);
     for n in [16.0, 48.0, 64.0] {
@@ -80,7 +75,7 @@ fn shared_samples(trials: &mut Trials) {
 
 /// Light that both an image and its reference miss is in no error. So some of the shipped experiments measure against
 /// an estimator that finds light in another way.
-fn shared_bias(trials: &mut Trials) {
+pub(super) fn shared_bias(trials: &mut Trials) {
     let spp = trials.times(64, 1024) as u32;
     let image = |seed, estimator, depth| film(seed, estimator, depth, spp).image();
     let [t1, t2, r1, r2] = [1, 2, 3, 4].map(|seed| image(seed, "bsdf", Some(1)));

@@ -1,5 +1,6 @@
 //! The price of an accuracy in time, and speedups that are too good.
 
+use crate::Trials;
 use crate::analysis::jackknife::{Curve, SeedCurves};
 use crate::analysis::price::{Law, Renderer};
 use crate::analysis::speedup::{Oddity, efficiency, is_superlinear, oddity, serial_fraction, speedup};
@@ -11,12 +12,6 @@ use crate::kernel::Spec;
 use crate::measure::Settings;
 use crate::scene::Scene;
 use crate::stage::{camera, diffuse, object, plane, scene, sphere};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "M11", tries: "the price of an accuracy, and paying it", run: price },
-    Case { id: "M12", tries: "speedups above the number of workers and below 1", run: odd_speedups },
-];
 
 /// A diffuse ball under half a sky, seen where its normal is horizontal: 1/4 in every pixel, without a heavy tail.
 fn half_lit() -> Scene {
@@ -35,7 +30,7 @@ fn squared_error(film: &Film) -> f64 {
 
 /// An error e takes v/e^2 samples and t v/e^2 seconds, and the efficiency is 1/(v t). A render with the predicted
 /// number of samples has the requested error within 5 %.
-fn price(trials: &mut Trials) {
+pub(super) fn price(trials: &mut Trials) {
     let (variance, seconds) = (9.0, 0.02);
     let seed = |factor: f64| -> Curve { [4.0, 16.0, 64.0].map(|spp| (spp, factor * variance / spp)).to_vec() };
     let known = Interval::between(seconds * 0.99, seconds * 1.01, 0.95).expect("an interval");
@@ -74,7 +69,7 @@ fn price(trials: &mut Trials) {
 
 /// From 1 to 2 processes, report C is 2.2 times as fast: Karp and Flatt's serial fraction is negative. The program
 /// reports this with a cause for which there is evidence, and never guesses one.
-fn odd_speedups(trials: &mut Trials) {
+pub(super) fn odd_speedups(trials: &mut Trials) {
     let interval = |low, high| Interval::between(low, high, 0.95).expect("an interval");
     trials.same("12 s to 3 s on 8", (Some(4.0), Some(0.5)), (speedup(12.0, 3.0), efficiency(4.0, 8)));
     // e = (1/S - 1/p)/(1 - 1/p)

@@ -1,16 +1,13 @@
 //! Heavy tails: a few samples dominate the estimate.
 
 use super::draw::Draw;
+use crate::Trials;
 use crate::analysis::tail::tail;
 use crate::exact::critical;
 use crate::kernel::{Spec, inspect};
 use crate::scene::{Scene, load};
-use crate::stage::{camera, diffuse, object, scene, sphere};
-use crate::{Case, Trials};
+use crate::stage::{diffuse, hollow};
 use std::sync::Arc;
-
-pub(super) const CASES: &[Case] =
-    &[Case { id: "M07", tries: "kurtosis and the largest sample's share", run: heavy_tails }];
 
 /// Samples of a small image, grouped by pixel.
 fn samples(scene: Scene, spp: u32, roulette: Option<String>) -> Vec<Vec<f64>> {
@@ -27,7 +24,7 @@ fn kurtosis(groups: &[Vec<f64>]) -> f64 {
 /// The kurtosis is (q^3 + p^3)/(p q) for a light that one sample in a hundred finds, 1 for a coin, 1.8 for a uniform
 /// number, 3 for a normal one, and 9.5 for the number of vertices under roulette at rho = 1/2. It is far larger in
 /// smallpt's box, where paths find a small lamp through glass.
-fn heavy_tails(trials: &mut Trials) {
+pub(super) fn heavy_tails(trials: &mut Trials) {
     let coin: Vec<f64> = (0..100).map(|k| f64::from(k % 2)).collect();
     trials.close("a coin", 1.0, kurtosis(&[coin]), 1e-12);
     let rare: Vec<f64> = (0..1000).map(|k| if k % 100 == 0 { 12.0 } else { 0.0 }).collect();
@@ -45,9 +42,7 @@ fn heavy_tails(trials: &mut Trials) {
     trials.deviates_below("uniform", critical(), (kurtosis(&[uniform]) - 1.8) / (0.2 / n as f64).sqrt());
 
     let spp = trials.times(1000, 50_000) as u32;
-    let wall = object(&sphere([0.0; 3], 1.0), &diffuse(0.5), [1.0; 3]);
-    let furnace = scene(&[camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), wall]);
-    let found = kurtosis(&samples(furnace, spp, Some("albedo:0".to_string())));
+    let found = kurtosis(&samples(hollow(&diffuse(0.5), [1.0; 3]), spp, Some("albedo:0".to_string())));
     trials.holds("vertices up to roulette", "9.5 +- 2", format_args!("{found:.2}"), (found - 9.5).abs() < 2.0);
     let cornell = load("cornell").expect("a shipped scene");
     let found = kurtosis(&samples(cornell, spp, None));

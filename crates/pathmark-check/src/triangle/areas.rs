@@ -1,27 +1,16 @@
 //! Triangles without area, very small and very large ones, and the two sides of a triangle.
 
-use super::single::{U, meet, scene, towards, triangle};
+use super::single::{meet, scene, towards, triangle};
 use crate::bare_scene::{intersect, searches};
 use crate::math::{Ray, Vec3};
 use crate::random::Random;
 use crate::refusals::refuses_shape;
 use crate::scene::{Primitive, Triangle};
 use crate::stage::{ANY_CAMERA, DIFFUSE, named, try_scene};
-use crate::{Case, Trials};
+use crate::{Trials, U};
 use std::io::Write;
 
-pub(super) const CASES: &[Case] = &[
-    Case { id: "T04", tries: "three corners on a line, from pbrt's bad cases", run: bad_case },
-    Case { id: "T05", tries: "no area, the smallest and largest areas, corners that are no numbers", run: areas },
-    Case { id: "T06", tries: "rays in the plane of a triangle, both windings", run: edge_on },
-    Case {
-        id: "T08",
-        tries: "both sides, and mirror images: the outside is where corners run counterclockwise",
-        run: sides,
-    },
-];
-
-fn bad_case(trials: &mut Trials) {
+pub(super) fn bad_case(trials: &mut Trials) {
     let bad = triangle([
         [-1_113.454_59, -79.049_614, -56.243_190_8],
         [-1_113.454_59, -87.092_269_9, -56.243_190_8],
@@ -40,7 +29,7 @@ fn bad_case(trials: &mut Trials) {
     }
 }
 
-fn areas(trials: &mut Trials) {
+pub(super) fn areas(trials: &mut Trials) {
     let (p, q) = ([0.1, 0.2, 0.3], [1.0, 2.0, 3.0]);
     let mut random = Random::new(5);
     for corners in [[p, p, p], [p, p, q], [p, q, p], [q, p, p], [[1.0; 3], [2.0; 3], [4.0; 3]]] {
@@ -85,7 +74,7 @@ fn counted(trials: &mut Trials) {
     trials.same("a mesh of one good triangle and three bad", &Some((1, 3)), &counts.ok());
 }
 
-fn edge_on(trials: &mut Trials) {
+pub(super) fn edge_on(trials: &mut Trials) {
     let [a, b, c] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     for (triangle, winding) in [(triangle([a, b, c]), "counterclockwise"), (triangle([a, c, b]), "clockwise")] {
         let (mut hits, mut tried) = (0, 0);
@@ -99,7 +88,7 @@ fn edge_on(trials: &mut Trials) {
     }
 }
 
-fn sides(trials: &mut Trials) {
+pub(super) fn sides(trials: &mut Trials) {
     for mirrored in [1.0, -1.0] {
         let corners = [[0.0, 0.0, 0.0], [mirrored, 0.0, 0.0], [0.0, 1.0, 0.0]];
         for (name, flat) in searches(&scene(vec![triangle(corners)])) {

@@ -1,26 +1,13 @@
 //! Values and arrangements of primitives that mislead builders of hierarchies.
 
 use super::hierarchies::{any_ray, in_cube};
+use crate::Trials;
 use crate::bare_scene::{intersect, scene_of, scene_of_spheres, searches};
 use crate::math::{Ray, Vec3};
 use crate::random::Random;
 use crate::refusals::refuses_shape;
 use crate::run::on_threads;
 use crate::scene::{Hit, Plane, Primitives, Scene, Sphere};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case {
-        id: "T14",
-        tries: "one, two, 2^16 + 1, identical, concentric, collinear, huge among tiny, NaN",
-        run: hard_to_build,
-    },
-    Case {
-        id: "T15",
-        tries: "built by many threads at once and in another order: the same tree, the same hits",
-        run: one_tree,
-    },
-];
 
 /// Levels that fit on the traversal's stack: 32 by the rule, then halvings of up to 2^32 primitives.
 const DEEPEST: usize = 64;
@@ -31,7 +18,7 @@ fn same_spheres(count: usize, center: impl Fn(usize) -> [f64; 3], radius: impl F
 
 /// No arrangement makes the tree deeper than the stack, and a ray at the last primitive has the same hit with every
 /// hierarchy.
-fn hard_to_build(trials: &mut Trials) {
+pub(super) fn hard_to_build(trials: &mut Trials) {
     let line = |k: usize| [k as f64, 0.0, 0.0];
     let shrinking = |k: usize| libm::exp2(-(k as f64) / 8.0);
     let many = trials.times(100_000, 1_000_000) as usize;
@@ -97,7 +84,7 @@ fn not_a_number(trials: &mut Trials) {
     }
 }
 
-fn one_tree(trials: &mut Trials) {
+pub(super) fn one_tree(trials: &mut Trials) {
     let mut random = Random::new(15);
     let all: Vec<Sphere> =
         (0..2000).map(|_| Sphere { center: in_cube(&mut random), radius: random.scale(-3.0, -1.0) }).collect();

@@ -1,31 +1,20 @@
 //! The contact point of a ball and the floor: hits that are nearer than any noise threshold count.
 
-use super::single::U;
-use crate::analysis::z_test::{critical_value, sidak};
 use crate::bare_scene::{intersect, searches};
 use crate::estimator::ESTIMATORS;
 use crate::exact::mean;
 use crate::kernel::{KERNELS, Spec};
 use crate::math::{Ray, Vec3, dot};
 use crate::random::Random;
-use crate::rendering::{by_kernel, render};
+use crate::rendering::{by_kernel, try_render};
 use crate::scene::{Scene, SurfaceOrigin};
 use crate::stage::{ball, camera, named, try_scene};
-use crate::{Case, Trials};
+use crate::{Trials, U, critical};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-pub(super) const CASES: &[Case] = &[Case {
-    id: "T18",
-    tries: "light and shadow of a ball 0.1 from where it touches the floor; a guard of t > 0.5 would lose them",
-    run: contact,
-}];
-
 /// Distance of the point from the contact of the unit ball.
 const AWAY: f64 = 0.1;
-
-/// Probability of a false alarm over all estimators and kernels.
-const LEVEL: f64 = 1e-3;
 
 /// A ball that touches the floor, seen at the point 0.1 from the contact, under the ball: the camera's direction rises
 /// by 6 of the 11 degrees that are free.
@@ -50,7 +39,7 @@ fn scene(before: &str, glow: f64, after: &str) -> Arc<Scene> {
     Arc::new(try_scene(&parts).expect("a right scene"))
 }
 
-fn contact(trials: &mut Trials) {
+pub(super) fn contact(trials: &mut Trials) {
     // The ball touches the horizon and lies wholly above it: its share of the light from a white sky is (r/d)² cos =
     // 1/d³.
     let share = 1.0 / ((1.0 + AWAY * AWAY) * (1.0 + AWAY * AWAY).sqrt());
@@ -68,15 +57,14 @@ fn contact(trials: &mut Trials) {
     };
     let squared = (5.0 - AWAY) * (5.0 - AWAY) + 0.25;
     let lit = 0.5 / PI * 0.5 / (squared * squared.sqrt());
-    let comparisons = 2 * ESTIMATORS.len() * KERNELS.len();
-    let critical = sidak(LEVEL, comparisons).and_then(critical_value).expect("a level between 0 and 1");
+    let critical = critical(2 * ESTIMATORS.len() * KERNELS.len());
     let spec = Spec { width: 32, height: 32, seed: 18, ..Spec::default() };
     let spp = trials.times(64, 4096) as u32;
     for estimator in ESTIMATORS {
         for spec in by_kernel(&Spec { estimator: estimator.name.into(), ..spec.clone() }) {
             let who = format!("{}, {}", spec.estimator, spec.kernel);
             for (what, scene, expected) in [("hidden light", light(-5.0, 3.0), 0.0), ("light", light(5.0, 0.5), lit)] {
-                let Some(outcome) = render(trials, &scene, spec.clone(), 4) else { continue };
+                let Some(outcome) = try_render(trials, &scene, spec.clone(), 4) else { continue };
                 // All pixels see points within 3e-7 of each other.
                 trials.close(format!("{what}, {who}"), expected, mean(&outcome.film, 0).0, 1e-6 * expected);
             }
@@ -86,7 +74,7 @@ fn contact(trials: &mut Trials) {
             }
             for (what, scene, expected) in [("glowing ball", &glowing, 0.5 * share), ("sky", &sky, 0.5 * (1.0 - share))]
             {
-                let Some(outcome) = render(trials, scene, spec.clone(), spp) else { continue };
+                let Some(outcome) = try_render(trials, scene, spec.clone(), spp) else { continue };
                 let (found, error) = mean(&outcome.film, 0);
                 trials.deviates_below(format!("{what}, {who}, {found:.6}"), critical, (found - expected) / error);
                 let told = format_args!("{:.1} standard errors", expected / error);

@@ -1,29 +1,15 @@
 //! Rays through edges and corners that triangles share.
 
+use super::single::moller_trumbore;
 use super::single::{meet, scene, towards, triangle};
-use super::unguarded::moller_trumbore;
+use crate::Trials;
 use crate::bare_scene::{intersect, searches};
 use crate::math::{Ray, Vec3, dot};
 use crate::meshes::{grid_cube, icosphere, star};
 use crate::random::Random;
 use crate::scene::{Primitive, Triangle};
-use crate::{Case, Trials};
 
-pub(super) const CASES: &[Case] = &[
-    Case { id: "T01", tries: "the diagonal of a quad, which both halves own: the first is hit", run: diagonal },
-    Case {
-        id: "T02",
-        tries: "edges and corners of closed meshes, from inside: no ray passes between",
-        run: closed_meshes,
-    },
-    Case {
-        id: "T03",
-        tries: "integer corners, rays along axes: all edge functions are exactly 0",
-        run: integer_corners,
-    },
-];
-
-fn diagonal(trials: &mut Trials) {
+pub(super) fn diagonal(trials: &mut Trials) {
     let [a, b, c, d] = [[-5.0, -5.0, 0.0], [5.0, -5.0, 0.0], [5.0, 5.0, 0.0], [-5.0, 5.0, 0.0]];
     let single = |x: f64| f64::from(x as f32);
     let direction = Vec3::new(single(0.304_584_47), single(0.304_584_47), single(-0.902_472_5));
@@ -57,7 +43,7 @@ fn meshes() -> [(&'static str, Vec<Triangle>, f64); 4] {
     ]
 }
 
-fn closed_meshes(trials: &mut Trials) {
+pub(super) fn closed_meshes(trials: &mut Trials) {
     let all = trials.times(200_000, 1_000_000_000);
     // Testing every triangle takes time in proportion to their number.
     let (every, mut leaks, mut compared) = (256, 0, 0);
@@ -85,7 +71,7 @@ fn closed_meshes(trials: &mut Trials) {
     trials.holds("Möller and Trumbore's test", "some, or these rays would prove nothing", told, leaks > 0);
 }
 
-fn integer_corners(trials: &mut Trials) {
+pub(super) fn integer_corners(trials: &mut Trials) {
     const N: i32 = 8;
     for (name, cube) in searches(&scene(grid_cube(N))) {
         let (mut wrong, mut tried) = (0, 0);

@@ -1,17 +1,11 @@
 //! Hierarchies compared with testing every primitive: the same primitive and the same bits of distance.
 
+use crate::Trials;
 use crate::bare_scene::{intersect, scene_of, searches};
 use crate::math::{Ray, Vec3, dot};
 use crate::meshes::{grid_cube, star};
 use crate::random::Random;
 use crate::scene::{Hit, Plane, Primitives, Scene, Sphere, SurfaceOrigin, Triangle};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[Case {
-    id: "T13",
-    tries: "rays through hierarchies of spheres, meshes, flat, nested, repeated and gridded things, from their surfaces too",
-    run: every_kind,
-}];
 
 /// A generator of rays for a scene.
 type MakeRay = fn(&mut Random, &Primitives) -> Ray;
@@ -51,7 +45,7 @@ fn grid_ray(random: &mut Random, _primitives: &Primitives) -> Ray {
     }
 }
 
-fn every_kind(trials: &mut Trials) {
+pub(super) fn every_kind(trials: &mut Trials) {
     let rays = trials.times(180_000, 10_000_000) / 6;
     for (what, primitives, make_ray) in arrangements() {
         let all = scene_of(primitives);

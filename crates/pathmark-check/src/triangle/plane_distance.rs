@@ -2,18 +2,12 @@
 //! n = (b - a) x (c - a). All differences are computed exactly. Exact integers confirm the result in
 //! `plane_distance_tests.rs`.
 
-use super::single::{U, meet, towards};
+use super::single::{meet, towards};
 use crate::double_double::{Dd, two_product};
 use crate::math::{Ray, dot};
 use crate::random::Random;
 use crate::scene::Triangle;
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[Case {
-    id: "T07",
-    tries: "triangles of 1e-6 a million away up to 1e9: distances within 7 roundings, and more for slivers",
-    run: seven_roundings,
-}];
+use crate::{Trials, U};
 
 /// The distance, rounded once, and the cosine between normal and direction.
 pub(super) fn exact_distance(triangle: &Triangle, ray: &Ray) -> (f64, f64) {
@@ -57,7 +51,7 @@ pub(super) fn aimed(random: &mut Random) -> (Triangle, Ray) {
     (triangle, towards(random.direction() * random.scale(-3.0, 3.0), target))
 }
 
-fn seven_roundings(trials: &mut Trials) {
+pub(super) fn seven_roundings(trials: &mut Trials) {
     let rays = trials.times(200_000, 10_000_000);
     let mut random = Random::new(0x7707);
     let (mut hits, mut outside, mut worst) = (0, 0, 0.0_f64);

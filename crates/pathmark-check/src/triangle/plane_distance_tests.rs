@@ -1,8 +1,8 @@
 //! The double-double oracle compared with exact integers, on 1e4 of the rays that it judges.
 
 use super::plane_distance::{aimed, exact_distance};
-use super::single::U;
-use crate::fixed_point::{UNIT, cross, dot, fixed, fixed_vector, minus};
+use crate::U;
+use crate::fixed_point_tests::{UNIT, cross, dot, fixed, fixed_vector, minus};
 use crate::random::Random;
 use num_bigint::BigInt;
 

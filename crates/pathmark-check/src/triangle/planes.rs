@@ -1,22 +1,12 @@
 //! Ray-plane intersection.
 
-use super::single::U;
 use crate::bare_scene::{intersect, scene_of, searches};
 use crate::math::{Frame, Ray, Vec3, dot};
 use crate::random::Random;
 use crate::refusals::refuses_shape;
 use crate::scene::{Plane, Primitive, Primitives, Scene, SurfaceOrigin};
 use crate::stage::{ANY_CAMERA, DIFFUSE, named, try_scene};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case { id: "T16", tries: "planes met at cosines down to 1e-90, from both sides", run: flat_angles },
-    Case {
-        id: "T17",
-        tries: "rays in the plane and from it; normals that are zero or of any length",
-        run: in_the_plane,
-    },
-];
+use crate::{Trials, U};
 
 const UP: Vec3 = Vec3::new(0.0, 1.0, 0.0);
 
@@ -28,7 +18,7 @@ fn scene(plane: Plane) -> Scene {
     scene_of(Primitives { planes: vec![plane], ..Primitives::default() })
 }
 
-fn flat_angles(trials: &mut Trials) {
+pub(super) fn flat_angles(trials: &mut Trials) {
     // A limit of 1e-4 on the scalar product would lose the cosine 1e-5.
     for cosine in [1.0_f64, 1e-2, 1e-4, 1e-5, 1e-9, 1e-15, 1e-90] {
         for (name, scene) in searches(&scene(floor(UP))) {
@@ -68,7 +58,7 @@ fn tilted(trials: &mut Trials) {
     trials.holds("tilted planes", "0 outside of their bounds", told, outside == 0);
 }
 
-fn in_the_plane(trials: &mut Trials) {
+pub(super) fn in_the_plane(trials: &mut Trials) {
     let (along, down) = (Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.0, -1.0, 0.0));
     let none = [
         ("beside it, along it", [0.0, 1.0, 0.0], along),

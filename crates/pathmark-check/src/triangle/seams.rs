@@ -2,34 +2,16 @@
 //! there.
 
 use super::single::{scene, towards};
+use crate::Trials;
 use crate::bare_scene::{intersect, searches};
-use crate::image_mean::{self, Moments};
 use crate::kernel::Spec;
 use crate::math::{Frame, Ray, Vec3};
 use crate::meshes::icosphere;
 use crate::random::Random;
+use crate::rendering::{self, Moments};
 use crate::scene::{Primitive, Primitives, Scene, SurfaceOrigin, Triangle};
 use crate::simd::Precision;
 use crate::stage::{self, GLASS, camera, diffuse, object, plane, quad};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case {
-        id: "T19",
-        tries: "rays that leave a diagonal, a seam of a flat mesh or wall, the middle of a fan, an edge of a round mesh: none meets the neighbour",
-        run: rays_from_seams,
-    },
-    Case {
-        id: "T20",
-        tries: "matte quads, flat meshes, fans and round meshes under a sky, seen at a seam, in f64 and f32: two rays a path",
-        run: two_rays_a_path,
-    },
-    Case {
-        id: "T21",
-        tries: "a slab of glass of quads, seen through both diagonals, in f64 and f32",
-        run: slab_through_diagonals,
-    },
-];
 
 /// A surface that a ray from its outside hits at most once, and the segments along which its triangles join.
 struct Surface {
@@ -91,7 +73,7 @@ fn point_of(seams: &[[Vec3; 2]], random: &mut Random) -> Vec3 {
     a + (b - a) * (0.25 + 0.5 * random.unit())
 }
 
-fn rays_from_seams(trials: &mut Trials) {
+pub(super) fn rays_from_seams(trials: &mut Trials) {
     let rays = trials.times(40_000, 10_000_000);
     for Surface { name, triangles, seams } in surfaces() {
         let plain = scene(triangles);
@@ -163,7 +145,7 @@ fn told(spec: &Spec) -> String {
 }
 
 /// Each path has the camera ray and one ray to the sky.
-fn two_rays_a_path(trials: &mut Trials) {
+pub(super) fn two_rays_a_path(trials: &mut Trials) {
     let spp = trials.times(16, 4096) as u32;
     for Surface { name, triangles, seams } in surfaces() {
         let mut random = Random::new(20);
@@ -178,7 +160,7 @@ fn two_rays_a_path(trials: &mut Trials) {
             let scene = under_a_sky(&triangles, target, from);
             for spec in specs("bsdf") {
                 let variant = format!("{name}, {}", told(&spec));
-                let counts = image_mean::run(&scene, spec, spp).counts;
+                let counts = rendering::run(&scene, spec, spp).counts;
                 trials.same(variant, &(2 * counts.paths, counts.paths), &(counts.rays, counts.escaped));
             }
         }
@@ -186,7 +168,7 @@ fn two_rays_a_path(trials: &mut Trials) {
 }
 
 /// T = 12/13 of the light behind the slab and R = 1/13 of the light before it.
-fn slab_through_diagonals(trials: &mut Trials) {
+pub(super) fn slab_through_diagonals(trials: &mut Trials) {
     let up = [0.0, 1.0, 0.0];
     let [near, far] = [-100.3, 99.7];
     // The point below the camera is on both diagonals.
@@ -205,10 +187,10 @@ fn slab_through_diagonals(trials: &mut Trials) {
     let spp = trials.times(256, 400_000) as u32;
     let limit = 4.5;
     for spec in ["smallpt", "bsdf"].into_iter().flat_map(specs) {
-        let outcome = image_mean::run(&scene, spec.clone(), spp);
+        let outcome = rendering::run(&scene, spec.clone(), spp);
         for (channel, exact) in [12.0 / 13.0, 1.0 / 13.0, 1.0].into_iter().enumerate() {
             let found = Moments::of(&outcome.film, channel);
-            image_mean::exact(trials, &format!("{}, channel {channel}", told(&spec)), exact, &found, limit, 0.2);
+            rendering::exact(trials, &format!("{}, channel {channel}", told(&spec)), exact, &found, limit, 0.2);
         }
     }
 }

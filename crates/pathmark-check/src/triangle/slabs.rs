@@ -1,18 +1,8 @@
 //! Ray-box intersection.
 
+use crate::Trials;
 use crate::math::{Ray, Vec3};
 use crate::scene::Bounds;
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case {
-        id: "T10",
-        tries: "all 35 000 rays along axes and diagonals, with both zeros, at flat boxes too",
-        run: exhaustive,
-    },
-    Case { id: "T11", tries: "a flat box of subnormal size", run: subnormal },
-    Case { id: "T12", tries: "rays along a face, exactly on it and just outside", run: along_a_face },
-];
 
 /// Whether the ray hits the closed box, in exact arithmetic: coordinates are small multiples of one half, and
 /// directions are -1, 0 or 1.
@@ -36,7 +26,7 @@ fn meets_exactly(origin: [f64; 3], direction: [f64; 3], bounds: &Bounds) -> bool
 
 /// Directions along axes, faces and diagonals, from points in, on and around boxes. A miss passes at a distance of at
 /// least one half, far more than the padding, so every false hit or false miss counts.
-fn exhaustive(trials: &mut Trials) {
+pub(super) fn exhaustive(trials: &mut Trials) {
     const STEPS: [f64; 4] = [-1.0, -0.0, 0.0, 1.0];
     const PLACES: [f64; 5] = [-1.0, 0.0, 0.5, 1.0, 2.0];
     let unit = Bounds { low: [0.0; 3], high: [1.0; 3] };
@@ -68,7 +58,7 @@ fn exhaustive(trials: &mut Trials) {
 }
 
 /// A box beside the ray, on it, and behind it; and a box of size zero at the origin.
-fn subnormal(trials: &mut Trials) {
+pub(super) fn subnormal(trials: &mut Trials) {
     let tiny = 5.693_442e-39;
     let bounds = Bounds { low: [tiny, -5000.0, 5000.0], high: [tiny, -5000.0, 5000.0] };
     let diagonal = Vec3::new(0.707_106_77, 0.707_106_77, 0.0);
@@ -85,7 +75,7 @@ fn subnormal(trials: &mut Trials) {
 }
 
 /// A ray exactly on the face, or within the padding outside, enters the box. At twice the padding it does not.
-fn along_a_face(trials: &mut Trials) {
+pub(super) fn along_a_face(trials: &mut Trials) {
     let bounds = Bounds { low: [0.3, 0.1, 7.0], high: [0.7, 0.9, 9.0] };
     // The padding of a box that reaches to 9, for an origin at 0.5 at least.
     let padding = libm::exp2(-47.0) * 9.5;

@@ -3,28 +3,15 @@
 
 use super::hierarchies::in_cube;
 use super::single::towards;
+use crate::Trials;
 use crate::bare_scene::{intersect, scene_of, searches};
-use crate::image_mean;
 use crate::kernel::{KERNELS, Spec};
 use crate::math::{Ray, Vec3, dot};
 use crate::random::Random;
+use crate::rendering;
 use crate::scene::{ACCELERATORS, Hit, Primitives, Scene, Sphere, SurfaceOrigin, Triangle};
 use crate::simd::Precision;
 use crate::stage::{self, diffuse, object, quad, view};
-use crate::{Case, Trials};
-
-pub(super) const CASES: &[Case] = &[
-    Case {
-        id: "T22",
-        tries: "slivers of relative heights down to nothing, and triangles of size 1 as far as 1e15: the same hits in every search",
-        run: same_hits,
-    },
-    Case {
-        id: "T23",
-        tries: "images of slivers that glow and that do not: one checksum for every accelerator and kernel",
-        run: same_images,
-    },
-];
 
 /// A triangle with an area and a relative height of about 10^`height`, at most 5 from the origin.
 fn sliver(random: &mut Random, height: f64) -> Triangle {
@@ -72,7 +59,7 @@ fn far_away(random: &mut Random, away: f64) -> Primitives {
     Primitives { triangles, ..Primitives::default() }
 }
 
-fn same_hits(trials: &mut Trials) {
+pub(super) fn same_hits(trials: &mut Trials) {
     let scenes = trials.times(40, 4000);
     for height in [-12.0, -14.0, -15.0, -16.0, -17.0] {
         compare(trials, &format!("heights of 1e{height}"), scenes, |random| among_others(random, height));
@@ -128,7 +115,7 @@ fn at_a_point(random: &mut Random, triangles: &[Triangle], origin: Vec3) -> Ray 
     towards(origin, a + (b - a) * u + (c - a) * v)
 }
 
-fn same_images(trials: &mut Trials) {
+pub(super) fn same_images(trials: &mut Trials) {
     let scenes = trials.times(24, 2000);
     let anything = quad([[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]);
     let mut random = Random::new(23);
@@ -152,7 +139,7 @@ fn same_images(trials: &mut Trials) {
                     let (accelerator, kernel) = (Some(accelerator.name.to_string()), kernel.name.to_string());
                     let precision = precision.name().to_string();
                     let spec = Spec { kernel, precision, accelerator, ..spec.clone() };
-                    checksums.push(image_mean::run(&scene, spec, 64).checksum);
+                    checksums.push(rendering::run(&scene, spec, 64).checksum);
                 }
             }
             checksums.dedup();

@@ -112,7 +112,7 @@ fn scene_item(lab: &Lab, name: &str) -> Result<Item> {
     let choice = choose(&scene, &Spec::default())?;
     let more = SceneItem {
         calls_for: effect_names(scene.effects()),
-        profile: choice.profile(),
+        profile: choice.profile.name,
         primitives: scene.owners.len(),
         estimator: scene.estimator().to_string(),
     };

@@ -12,7 +12,7 @@ use crate::film::Shard;
 use crate::image_io;
 use crate::kernel::workload::WORKLOAD;
 use crate::lab::Lab;
-use crate::measure::{Measured, Outcome, Record, Settings, Setup, TraceFile};
+use crate::measure::{Outcome, Record, Settings, Setup, TraceFile};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -100,7 +100,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
         TraceFile::new(&setup, &outcome).write(trace)?;
     }
 
-    let mut record = Record::new(&setup, &outcome, Measured::default());
+    let mut record = Record::new(&setup, &outcome);
     arguments.rounds.label(&mut record);
     if let Some(cluster) = &clustered {
         ranks::label(cluster, &mut record);

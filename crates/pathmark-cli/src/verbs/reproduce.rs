@@ -46,11 +46,12 @@ pub(crate) struct Arguments {
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     let profile = arguments.size.profile();
     let options = Options {
+        out: arguments.out.clone(),
         profile,
         resume: arguments.resume,
         timeout: arguments.timeout.as_deref().map(Timeout::parse).transpose()?,
         command: command_line(),
-        ..Options::usual(arguments.out.clone())
+        ..Options::default()
     };
     let mut definitions =
         Definition::known(lab).map(|(name, _)| Definition::load(lab, name)).collect::<Result<Vec<_>>>()?;

@@ -33,9 +33,6 @@ pub(crate) struct Arguments {
     /// pilot
     #[arg(long, conflicts_with = "resume")]
     plan: bool,
-    /// After all repetitions, run the cells with doubtful rows again, once for each such row; keep both rows
-    #[arg(long)]
-    rerun_doubtful: bool,
     /// Also count the instructions of each cell with valgrind, which takes about fifty times as long as a repetition;
     /// `pathmark diff --counts` compares them
     #[arg(long)]
@@ -95,7 +92,6 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
             .map(|limit| StoppingRule::parse(limit, arguments.max_time.as_deref()))
             .transpose()?,
         timeout: arguments.timeout.as_deref().map(Timeout::parse).transpose()?,
-        rerun_doubtful: arguments.rerun_doubtful,
         count_instructions: arguments.count_instructions,
         command: command_line(),
     };

@@ -4,7 +4,7 @@ use super::failed;
 use crate::error::{Error, Result};
 use crate::lab::{Distribution, LOOK, Master, RankRule, is_small};
 use crate::measure::Share;
-use crate::strategy::{ChunkRule, LearnedRule, Ledger, Seen};
+use crate::strategy::{LearnedRule, Ledger, Seen};
 use pathmark_mpi::{Counter, World};
 use std::cell::RefCell;
 use std::ops::Range;
@@ -14,7 +14,6 @@ use std::thread;
 use std::time::Instant;
 use std::vec::IntoIter;
 
-/// Number of requests for jobs, and the seconds of waiting for them.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Wait {
     pub(super) requests: u64,
@@ -23,11 +22,6 @@ pub(super) struct Wait {
 
 /// The answer to a rank if no chunk is left.
 const NOTHING_LEFT: [u64; 2] = [0; 2];
-
-/// The chunks of a rule in the order of their numbers, for `ranks` ranks that render.
-fn chunks_of(rule: ChunkRule, jobs: usize, ranks: usize) -> Vec<Range<usize>> {
-    rule.chunks(jobs, ranks.max(1)).collect()
-}
 
 /// The resources with which ranks share jobs by a rule; made before the clock starts.
 pub(super) struct HandOut<'a> {
@@ -50,7 +44,6 @@ impl<'a> HandOut<'a> {
         Ok(Self { world, distribution: rule.distribution(), counter })
     }
 
-    /// Runs this rank's jobs until none is left for it.
     pub(super) fn run(&mut self, share: &mut Share<'_>) -> Result<Wait> {
         let (world, jobs) = (self.world, share.plan().len());
         match self.distribution {
@@ -59,14 +52,14 @@ impl<'a> HandOut<'a> {
                 Ok(Wait::default())
             }
             Distribution::SharedCounter(rule) => {
-                let chunks = chunks_of(rule, jobs, world.size());
+                let chunks: Vec<_> = rule.chunks(jobs, world.size()).collect();
                 self.counter.as_mut().map_or(Ok(Wait::default()), |counter| counted(counter, &chunks, world, share))
             }
             Distribution::Master(master, rule) => {
                 let ranks = if master == Master::Only { world.size() - 1 } else { world.size() };
-                let stock = || Stock::Chunks(chunks_of(rule, jobs, ranks).into_iter());
+                let stock = || Stock::Chunks(rule.chunks(jobs, ranks.max(1)).collect::<Vec<_>>().into_iter());
                 match (world.rank(), master) {
-                    (0, Master::Only) => answer_all(stock(), world),
+                    (0, Master::Only) => Desk::new(stock(), world).answer_the_last().map(|_| Wait::default()),
                     (0, Master::Working) => answer_between_chunks(stock(), world, share),
                     _ => ask(world, share),
                 }
@@ -132,7 +125,7 @@ fn render_attentively(
             while ask.send(seen).is_ok()
                 && let Ok(chunk) = given.recv()
             {
-                seen = seen_rendering(chunk, share, |jobs, share| share.render(jobs))?;
+                seen = seen_rendering(chunk, share)?;
             }
             Ok(())
         };
@@ -172,19 +165,15 @@ fn ask(world: &World, share: &mut Share<'_>) -> Result<Wait> {
         if start >= end.min(share.plan().len()) {
             return Ok(wait);
         }
-        seen = seen_rendering(start..end.min(share.plan().len()), share, |jobs, share| share.render(jobs))?;
+        seen = seen_rendering(start..end.min(share.plan().len()), share)?;
     }
 }
 
 /// Renders, and returns the job durations. Jobs of several threads count as if they had run one after the other in the
 /// elapsed time.
-fn seen_rendering<'a>(
-    jobs: Range<usize>,
-    share: &mut Share<'a>,
-    render: impl FnOnce(Vec<usize>, &mut Share<'a>) -> Result<()>,
-) -> Result<Seen> {
+fn seen_rendering(jobs: Range<usize>, share: &mut Share<'_>) -> Result<Seen> {
     let (before_s, count) = (share.elapsed_s(), jobs.len());
-    render(jobs.collect(), share)?;
+    share.render(jobs.collect())?;
     let seconds = share.elapsed_s() - before_s;
     let durations = || share.last(count).iter().map(|job| job.span.duration_s());
     let busy_s: f64 = durations().sum();
@@ -194,15 +183,12 @@ fn seen_rendering<'a>(
     Ok(durations().map(|duration| duration * seconds / busy_s).collect())
 }
 
-/// The chunks that rank 0 hands out.
 enum Stock {
-    /// Chunks of known sizes.
     Chunks(IntoIter<Range<usize>>),
     /// Chunks whose sizes depend on how fast the ranks have been.
     Learned(LearnedRule, Box<Ledger>),
 }
 
-/// Rank 0's side of [`ask`].
 struct Desk<'a> {
     world: &'a World,
     stock: Stock,
@@ -215,7 +201,6 @@ impl<'a> Desk<'a> {
         Self { world, stock, asking: world.size() - 1 }
     }
 
-    /// The next chunk of a rank, if one is left.
     fn take(&mut self, rank: usize, seen: Seen) -> Option<Range<usize>> {
         match &mut self.stock {
             Stock::Chunks(chunks) => chunks.next(),
@@ -226,7 +211,6 @@ impl<'a> Desk<'a> {
         }
     }
 
-    /// Answers all pending requests.
     fn answer_who_waits(&mut self) -> Result<()> {
         while self.asking > 0 && self.world.has_message().map_err(failed)? {
             self.answer()?;
@@ -243,7 +227,6 @@ impl<'a> Desk<'a> {
         Ok(Wait { requests: 0, ..wait })
     }
 
-    /// Waits for a request, and answers it.
     fn answer(&mut self) -> Result<()> {
         let mut request = [0; 4];
         self.world.receive(None, &mut request).map_err(failed)?;
@@ -261,21 +244,13 @@ impl<'a> Desk<'a> {
     }
 }
 
-fn answer_all(stock: Stock, world: &World) -> Result<Wait> {
-    let mut desk = Desk::new(stock, world);
-    while desk.asking > 0 {
-        desk.answer()?;
-    }
-    Ok(Wait::default())
-}
-
 /// Answers between rank 0's own chunks, as a program with a single thread does.
 fn answer_between_chunks(stock: Stock, world: &World, share: &mut Share<'_>) -> Result<Wait> {
     let (mut desk, mut seen) = (Desk::new(stock, world), Seen::default());
     loop {
         desk.answer_who_waits()?;
         let Some(chunk) = desk.take(0, seen) else { break };
-        seen = seen_rendering(chunk, share, |jobs, share| share.render(jobs))?;
+        seen = seen_rendering(chunk, share)?;
     }
     desk.answer_the_last()
 }

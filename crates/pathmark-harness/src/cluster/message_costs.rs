@@ -35,24 +35,19 @@ const LOOKS: &str = "computes, and looks every ms";
 #[serde(deny_unknown_fields)]
 pub struct MessageCosts {
     pub ranks: usize,
-    /// Name and version of the MPI library.
     pub mpi: String,
-    /// The operations.
     pub costs: Vec<MessageCost>,
 }
 
-/// The cost of one operation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MessageCost {
     pub operation: String,
-    /// The activity of rank 0 meanwhile.
     pub rank_0: String,
     pub repetitions: u64,
     pub median_s: f64,
     /// The distribution-free 95 % interval of the median.
     pub low_s: f64,
-    /// See `low_s`.
     pub high_s: f64,
 }
 
@@ -75,7 +70,6 @@ impl MessageCosts {
         self.costs.iter().find(is_it).map_or(0.0, |cost| cost.median_s)
     }
 
-    /// Seconds of a request and its answer, while rank 0 waits.
     pub fn request_s(&self) -> f64 {
         self.median_s(REQUEST, None)
     }
@@ -90,7 +84,6 @@ impl MessageCosts {
         self.median_s(FETCH, Some(LOOKS))
     }
 
-    /// Seconds for each byte that rank 0 gathers.
     pub fn gathered_byte_s(&self) -> f64 {
         let bytes = GATHERED * size_of::<u64>() * self.ranks.saturating_sub(1);
         self.median_s(GATHER, None) / bytes.max(1) as f64
@@ -167,7 +160,6 @@ impl Cluster {
         Ok(seconds)
     }
 
-    /// Seconds of gathers, as measured on rank 0.
     fn gathers(&self) -> Result<Vec<f64>> {
         let words = vec![0; GATHERED];
         let seconds = timed(FEW, || {
@@ -190,7 +182,6 @@ impl Cluster {
     }
 }
 
-/// Keeps the processor busy for `time`.
 fn compute(time: Duration) {
     let begin = Instant::now();
     while begin.elapsed() < time {
@@ -198,7 +189,6 @@ fn compute(time: Duration) {
     }
 }
 
-/// Repeats an operation, and returns the seconds of each repetition.
 fn timed(repetitions: usize, mut operation: impl FnMut() -> Result<()>) -> Result<Vec<f64>> {
     let one = |_| {
         let begin = Instant::now();

@@ -3,17 +3,20 @@
 //! A rule assigns the jobs of the plan to ranks; within a rank a strategy spreads them over its threads. Any rule works
 //! with any strategy. The film has the same bits as the film of one process: ranks send the sums of each piece, and
 //! rank 0 puts the pieces in their places.
+//!
+//! In rounds, rank 0 alone knows the film and the goal. Before each round it sends the range of samples to the others;
+//! they render their share, and forget it. A run that was ended can therefore continue with another number of ranks.
 
 mod hand_out;
 mod message_costs;
-mod rounds;
 mod wire;
 
 use crate::digest;
 use crate::error::{Error, InputError, Result};
+use crate::film::ProgressiveFilm;
 use crate::kernel::REVISION;
 use crate::lab::RankRule;
-use crate::measure::{MergedShare, Outcome, Record, Setup};
+use crate::measure::{Extend, MergedShare, Outcome, Record, RoundTimes, Rounds, Setup};
 use hand_out::HandOut;
 pub use message_costs::{MessageCost, MessageCosts};
 use pathmark_mpi::{MpiError, World};
@@ -23,14 +26,10 @@ use std::path::{Path, PathBuf};
 use std::slice::from_ref;
 use std::{env, io};
 
-/// Statistics of one rank.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RankRow {
-    /// Its number, from 0.
     pub rank: usize,
-    /// Jobs that it ran.
     pub jobs: u64,
-    /// Times that it asked for jobs.
     pub requests: u64,
     /// Seconds that its workers spent on jobs, in total.
     pub busy_s: f64,
@@ -38,15 +37,12 @@ pub struct RankRow {
     pub waiting_s: f64,
 }
 
-/// Statistics of all ranks, beside the film.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Tally {
-    /// Statistics of each rank, over all rounds.
     #[serde(rename = "by_rank")]
     pub ranks: Vec<RankRow>,
     /// Seconds to bring all pieces to rank 0, over all rounds.
     pub gather_s: f64,
-    /// Name and version of the MPI library.
     #[serde(skip)]
     pub library: String,
 }
@@ -70,6 +66,9 @@ fn failed(error: MpiError) -> Error {
     }
 }
 
+/// Sent instead of a range of samples: no round follows.
+const NO_MORE: [u64; 2] = [0; 2];
+
 impl Cluster {
     /// Opens the MPI library that the user names, here or in `PATHMARK_MPI`, or one that systems usually have.
     pub fn begin(library: Option<&Path>) -> Result<Self> {
@@ -83,7 +82,6 @@ impl Cluster {
         self.world.rank() == 0
     }
 
-    /// Number of ranks.
     pub fn size(&self) -> usize {
         self.world.size()
     }
@@ -113,7 +111,6 @@ impl Cluster {
         }
     }
 
-    /// Refuses ranks whose task differs from rank 0's.
     fn check_same(&self, setup: &Setup, rule: &RankRule, way: &str) -> Result<()> {
         let settings = setup.settings();
         let text = format!(
@@ -175,6 +172,62 @@ impl Cluster {
         let done =
             wire::jobs(&words, share.plan()).ok_or_else(|| Error::Check("a rank sent invalid jobs".to_string()))?;
         Ok(Some(MergedShare { done, workers: world.size() * threads, makespan_s }))
+    }
+
+    /// Renders in rounds. On rank 0, calls `lead` with a function that extends its film; `lead` decides when to stop.
+    /// The other ranks follow, and get `None`.
+    pub fn render_in_rounds<T>(
+        self,
+        setup: Setup,
+        rule: &RankRule,
+        lead: impl FnOnce(Setup, Extend<'_>) -> Result<T>,
+    ) -> Result<Option<(T, Tally)>> {
+        let ranks = self.agreed(&setup, rule, "in rounds")?;
+        let mut tally = Tally::new(&ranks.world);
+        if !ranks.is_first() {
+            ranks.follow(&setup, rule, &mut tally)?;
+            ranks.world.end().map_err(failed)?;
+            return Ok(None);
+        }
+        let mut is_broken = false;
+        let led = lead(setup, &mut |rounds, spp| {
+            is_broken = true;
+            let times = ranks.lead_round(rounds, spp, rule, &mut tally)?;
+            is_broken = false;
+            Ok(times)
+        });
+        // After a failed round the others no longer listen; the launcher ends them.
+        if !is_broken {
+            ranks.tell(NO_MORE)?;
+            ranks.world.end().map_err(failed)?;
+        }
+        led.map(|led| Some((led, tally)))
+    }
+
+    fn lead_round(&self, rounds: &mut Rounds, spp: u32, rule: &RankRule, tally: &mut Tally) -> Result<RoundTimes> {
+        let from = rounds.spp();
+        rounds.extend_by(spp, |setup, sections| {
+            self.tell([u64::from(from), u64::from(spp)])?;
+            let gathered = self.round(setup, rule, sections, tally)?;
+            gathered.ok_or_else(|| Error::Check("rank 0 received no jobs from the other ranks".to_string()))
+        })
+    }
+
+    fn follow(&self, setup: &Setup, rule: &RankRule, tally: &mut Tally) -> Result<()> {
+        loop {
+            let told = self.tell(NO_MORE)?;
+            if told == NO_MORE {
+                return Ok(());
+            }
+            let [from, to] = told.map(|samples| u32::try_from(samples).unwrap_or(u32::MAX));
+            self.round(setup, rule, &ProgressiveFilm::missing_after(from, to), tally)?;
+        }
+    }
+
+    /// Sends rank 0's `samples` to all ranks, and returns them.
+    fn tell(&self, samples: [u64; 2]) -> Result<[u64; 2]> {
+        let all = self.world.all_gather(&samples).map_err(failed)?;
+        Ok(all.first_chunk().copied().unwrap_or(NO_MORE))
     }
 }
 

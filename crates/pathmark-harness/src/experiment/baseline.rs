@@ -17,13 +17,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-/// The folder of the other build's rows, inside the folder of results.
 const FOLDER: &str = "baseline";
 
 /// The time in which a program prints its help. A program of another kind may run for ever.
 const HELP: Duration = Duration::from_mins(1);
 
-/// The other build, and the files for its rows.
 pub(super) struct Baseline {
     program: PathBuf,
     folder: PathBuf,
@@ -32,7 +30,6 @@ pub(super) struct Baseline {
     has_rows: bool,
 }
 
-/// The folder of the other build's rows of an experiment.
 pub fn baseline_folder(out: &Path, name: &str) -> PathBuf {
     out.join(FOLDER).join(name)
 }
@@ -90,7 +87,7 @@ impl Baseline {
 
     /// Runs a repetition of a cell; returns its rows.
     pub(super) fn run(&mut self, job: &CellJob, limit: Option<Duration>) -> Result<Vec<Record>> {
-        let rows = Self::job(job).run_in_child_of(Ok(self.program.clone()), limit);
+        let rows = Self::job(job).run_in_child(Some(self.program.as_path()), limit);
         let rows: Vec<Record> = rows.into_iter().map(|row| Record { run_order: job.order, ..row }).collect();
         self.append(&rows)?;
         Ok(rows)

@@ -1,16 +1,17 @@
-//! A cell: settings that are run some number of times.
+//! A cell: settings that are run some number of times, and the version of its scene.
 
-use super::{External, SceneVersion};
+use super::External;
 use crate::error::{InputError, Result};
 use crate::measure::{ImageKey, SETTINGS, ScheduleKey, Setting, Settings, Setup, available_threads, schedule_name};
+use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
+use std::path::PathBuf;
 
-/// One combination of the experiment's matrix.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Cell {
     /// The settings in one word: the key by which a resumed sweep finds its finished rows.
     pub id: String,
     pub settings: Settings,
-    /// The scene as it was when the cell was made.
     pub scene: SceneVersion,
     /// Its rows: one, or the points of its curve, in the order of samples per pixel.
     pub points: Vec<CellPoint>,
@@ -22,7 +23,6 @@ pub struct Cell {
     pub external: Option<External>,
 }
 
-/// A row of a cell.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CellPoint {
     /// Its key. For a point of a curve: the key of a cell with so many samples, followed by the name of the curve.
@@ -39,14 +39,8 @@ impl CellPoint {
 }
 
 impl Cell {
-    /// Its repetitions in an experiment of `others` repetitions.
     pub(super) fn repetitions(&self, others: u32) -> u32 {
         self.at_most.map_or(others, |most| most.min(others))
-    }
-
-    /// Whether it runs its jobs one after the other on one thread.
-    pub(super) fn is_serial(&self) -> bool {
-        self.settings.is_serial()
     }
 
     /// Its settings without its schedule. A serial run with the same ones, and any decomposition, is its baseline.
@@ -110,6 +104,40 @@ impl Cell {
     }
 }
 
+/// The chosen cells, and the serial runs that they are compared with if they are, in the order of all cells.
+pub(super) fn with_serial_runs(cells: &[Cell], chosen: &[&Cell], are_compared: bool) -> Vec<Cell> {
+    let ids: HashSet<&str> = chosen.iter().map(|cell| cell.id.as_str()).collect();
+    let compared: HashSet<Settings> = chosen.iter().map(|cell| cell.without_schedule()).collect();
+    let is_needed =
+        |cell: &Cell| are_compared && cell.settings.is_serial() && compared.contains(&cell.without_schedule());
+    cells.iter().filter(|cell| ids.contains(cell.id.as_str()) || is_needed(cell)).cloned().collect()
+}
+
 pub fn trace_file(cell: &str, repetition: u32) -> String {
     format!("{}-r{repetition}.csv", cell.replace(['/', ':'], "-"))
+}
+
+/// A scene as it was when an experiment began, meshes and bases included. Its files may be edited while the experiment
+/// runs. Rows of two versions are no repetitions of each other, and are not measured against each other's references.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct SceneVersion {
+    pub hash: String,
+    pub files: Vec<PathBuf>,
+}
+
+impl SceneVersion {
+    pub fn of(setup: &Setup) -> Self {
+        Self { hash: setup.hash(), files: setup.files().to_vec() }
+    }
+
+    /// Refuses another hash: the scene has changed since this version was read.
+    pub fn check(&self, hash: &str) -> Result<()> {
+        if hash == self.hash {
+            return Ok(());
+        }
+        let files: Vec<String> = self.files.iter().map(|file| file.display().to_string()).collect();
+        let problem = format!("has changed since the experiment began: its hash was {}", self.hash);
+        let error = InputError::new("scene_hash", hash, problem);
+        Err(error.in_file(files.join(" or "), None).into())
+    }
 }

@@ -23,7 +23,7 @@ use crate::input::read_text;
 use crate::kernel::DEVICE_NAME;
 use crate::lab::Lab;
 use crate::measure::{
-    Measured, Outcome, Record, Rounds, Settings, Setup, TraceFile, Warning, failure, missing_external, run_external,
+    Outcome, Record, Rounds, Settings, Setup, TraceFile, Warning, failure, missing_external, run_external,
 };
 use crate::metric::cross_mse;
 use serde::{Deserialize, Serialize};
@@ -38,18 +38,14 @@ use std::time::{Duration, Instant};
 /// keep these words.
 pub const CELL_ABOUT: &str = "One cell of a sweep, read from standard input";
 
-/// The job of a child process.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct CellJob {
     pub experiment: String,
     /// Its rows, in the order of samples per pixel: one, or the points of a curve.
     pub points: Vec<PointJob>,
     pub repetition: u32,
-    /// Position in the sweep.
     pub order: u64,
-    /// The settings to run.
     pub settings: Settings,
-    /// The scene as it was when the experiment began.
     pub scene: SceneVersion,
     /// The two half-references, if errors are to be measured.
     pub references: Option<[HalfFile; 2]>,
@@ -71,10 +67,8 @@ struct Kept {
     first: Record,
 }
 
-/// One row of a cell.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PointJob {
-    /// The row's key.
     pub cell: String,
     pub spp: u32,
     /// The path for the image, if it is kept.
@@ -98,19 +92,11 @@ impl CellJob {
         Self { points, references: None, object: None, trace: None, ..self.clone() }
     }
 
-    /// Runs the cell in a child process and returns a row for each point. An error there, and the end of the time limit,
-    /// become failed rows.
-    pub(super) fn run_in_child(&self, limit: Option<Duration>) -> Vec<Record> {
-        let own = env::current_exe().map_err(|e| format!("finding this program: {e}"));
-        self.run_in_child_of(own, limit)
-    }
-
-    /// Runs the cell in a child process of `program`, which may be another build.
-    pub(super) fn run_in_child_of(
-        &self,
-        program: std::result::Result<PathBuf, String>,
-        limit: Option<Duration>,
-    ) -> Vec<Record> {
+    /// Runs the cell in a child process, of another build if one is given, and returns a row for each point. An error
+    /// there, and the end of the time limit, become failed rows.
+    pub(super) fn run_in_child(&self, other: Option<&Path>, limit: Option<Duration>) -> Vec<Record> {
+        let own = || env::current_exe().map_err(|e| format!("finding this program: {e}"));
+        let program = other.map_or_else(own, |other| Ok(other.to_path_buf()));
         let rows = program.and_then(|program| self.child(&program, limit));
         rows.and_then(|answer| self.rows(&answer)).unwrap_or_else(|error| self.failed(&error))
     }
@@ -123,7 +109,6 @@ impl CellJob {
         if rows.len() == self.points.len() { Ok(rows) } else { Err(wrong()) }
     }
 
-    /// A failed row for each point.
     pub(super) fn failed(&self, error: &str) -> Vec<Record> {
         let failed = |point: &PointJob| {
             let settings = Settings { spp: point.spp, ..self.settings.clone() };
@@ -184,8 +169,7 @@ impl CellJob {
             return self.run(lab, kept);
         };
         let point = PointJob { image: None, ..point.clone() };
-        let row = self.row(&point, setup, &setup.run(None)?, None)?.with_errors(first.errors());
-        Ok(vec![Record { object_mse: first.object_mse, ..row }])
+        Ok(vec![self.row(&point, setup, &setup.run(None)?, None)?.with_errors_of(first)])
     }
 
     /// The setup with `spp` samples per pixel; refuses a scene that has changed since the experiment began.
@@ -199,12 +183,11 @@ impl CellJob {
     /// with a GPU.
     fn without_device(&self, lab: &Lab) -> Result<Option<Vec<Record>>> {
         let setup = self.setup(lab, self.settings.spp)?;
-        let is_without = setup.scene().is_some_and(|(_, choice)| choice.lacks_device());
+        let is_without = setup.scene().is_some_and(|(_, choice)| choice.plan.lacks_device());
         let row = |point: &PointJob| self.left_out(point, &setup, &Warning::NoDevice);
         Ok(is_without.then(|| self.points.iter().map(row).collect()))
     }
 
-    /// The row of a point that was not run, for this reason.
     fn left_out(&self, point: &PointJob, setup: &Setup, reason: &Warning) -> Record {
         let mut record = Record { spp: point.spp, ..Record::of(setup) };
         record.warn(reason);
@@ -259,11 +242,11 @@ impl CellJob {
             if let Some(path) = &point.image {
                 image_io::write(path, &run.image)?;
             }
-            let errors = match references {
-                Some([first, second]) => Measured::against(&run.image, first, second)?,
-                None => Measured::default(),
-            };
-            Ok(self.label(point, run.record(&self.settings, &scene, errors)))
+            let mut record = run.record(&self.settings, &scene);
+            if let Some(halves) = references {
+                record = record.with_errors(&run.image, halves)?;
+            }
+            Ok(self.label(point, record))
         };
         self.points.iter().map(row).collect()
     }
@@ -312,15 +295,14 @@ impl CellJob {
         let notes = || outcome.provenance(setup).notes();
         point.image.as_ref().map_or(Ok(()), |path| image_io::write_with_notes(path, &image, &notes()))?;
         let image_write_s = point.image.as_ref().map(|_| begun.elapsed().as_secs_f64());
-        let errors = match references {
-            Some([first, second]) => Measured::against(&image, first, second)?,
-            None => Measured::default(),
-        };
-        let mut record = Record { image_write_s, ..Record::new(setup, outcome, errors) };
-        if let (Some(object), Some([first, second])) = (&self.object, references) {
-            let wanted = object_pixels(setup, object)?;
-            let [image, first, second] = [&image, first, second].map(|image| only(image, &wanted));
-            record.object_mse = Some(cross_mse(&image, &first, &second)?);
+        let mut record = Record { image_write_s, ..Record::new(setup, outcome) };
+        if let Some(halves @ [first, second]) = references {
+            record = record.with_errors(&image, halves)?;
+            if let Some(object) = &self.object {
+                let wanted = object_pixels(setup, object)?;
+                let [image, first, second] = [&image, first, second].map(|image| only(image, &wanted));
+                record.object_mse = Some(cross_mse(&image, &first, &second)?);
+            }
         }
         Ok(self.label(point, record))
     }

@@ -24,14 +24,12 @@ const INSTRUCTIONS: &str = "instructions";
 /// Instruction counts repeat to within this share: memory addresses differ from run to run.
 const REPEATS: f64 = 1e-3;
 
-/// A count of a cell in both measurements.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct CountDiff {
     pub cell: String,
     pub column: &'static str,
     /// The largest count of its repetitions in the old measurement.
     pub old: u64,
-    /// The same in the new measurement.
     pub new: u64,
 }
 
@@ -42,14 +40,10 @@ impl CountDiff {
     }
 }
 
-/// The counts of two measurements of an experiment.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CountDiffs {
-    /// The counts that differ.
     pub changed: Vec<CountDiff>,
-    /// Number of counts that both measurements have.
     pub compared: usize,
-    /// The cells that only the old measurement has.
     pub lost: Lost,
 }
 

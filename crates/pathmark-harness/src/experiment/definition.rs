@@ -1,66 +1,34 @@
-//! Definitions: the text of an experiment.
+//! Definitions: the text of an experiment. `pathmark list keys` explains every key.
 //!
 //! ```toml
 //! title = "Time against threads"
 //! question = "How much faster do more threads make it?"
-//! analysis = "How to read the figures."   # optional
 //! figures = ["speedup"]
-//! chapter = "scheduling"          # optional: accuracy, scheduling, hard-inputs or effects; where the page has it
-//! place = 3                       # optional: its place among the experiments of the chapter
-//! in-short = 1                    # optional: the number of the finding that stands at the beginning of the page
-//! keep = ["traces"]               # optional: images, traces, calibration, messages
-//! timeout = "10min"               # optional: the time limit of each cell's process, or "none"; a profile may have another
 //!
-//! [matrix]                       # cells are all combinations
-//! scene = ["cornell"]            # or "all"
-//! estimator = ["smallpt"]        # or "default", the scene's own, which is meant without this line
+//! [matrix]                       # cells are all combinations; there may be several, each under [[matrix]]
+//! scene = ["cornell"]
 //! spp = [16]
-//! seed = [1]                     # optional
-//! strategy = ["serial", "rayon"]  # or "all"
+//! strategy = ["serial", "rayon"]
 //! threads = [1, 2, "all"]
 //! decomposition = ["tiles:32x32"]
-//! # There may be several, each under [[matrix]]. Optional: sampler, output, effects, accelerator, roulette, max-depth, size (instead of the
-//! # profile's), kernel, simd, precision, adaptive, clamp, filter, epsilon, weak = true, which gives each cell spp times its threads, and curve = true, which gives a row at 1, 2, 4 ... times the
-//! # fewest samples on the way to each spp. profiles = ["reports"] is for a matrix that other profiles do not have, and repetitions = 3 for one
-//! # whose cells are run no more often.
 //!
-//! [[compare]]                    # optional: cells that run side by side, in adjacent pairs (see `comparisons`)
-//! what = { threads = [2] }       # optional: all cells
+//! [[compare]]                    # cells that run side by side, in adjacent pairs (see `comparisons`)
 //! with = { strategy = ["serial"] }
-//! goal = "2 %"                   # optional: half of the interval that each ratio should have
-//!
-//! [figure.price-list]            # optional: what a figure of the list above is told
-//! goals = [0.1, 0.01]
-//!
-//! [reference]                    # optional: measures errors
-//! estimator = "bsdf"
-//! object = "mirror ball"          # optional: and those on the pixels of this object (column object_mse)
 //!
 //! [quick]                        # what `--quick` renders; the profile may replace any axis of the matrices
 //! size = [128, 96]
-//! pairs = 16                     # optional: of each process, if there are comparisons; repetitions then count processes
-//! repetitions = 6                # or { until = "3 %", at-most = 200, max-time = "60 s" }; until = "fastest" or "order" compares schedules
-//! reference-spp = 2000           # optional: ten times the largest spp
-//!
-//! [full]                         # `--full`; without any of [quick], [full] and [reports] there is a [quick] of 320x240, 6 repetitions
-//! size = [1024, 768]
-//! repetitions = 9
-//! reference-spp = 2000
-//!
-//! [reports]                      # `--reports`: sizes and parameters of the reports
-//! size = [1024, 768]
-//! repetitions = 1
-//! reference-spp = 2000
+//! repetitions = 6                # processes, where cells are compared; `pairs` are then those of each process
 //! ```
 
 use super::comparisons::Compare;
 use super::stopping_rule::StoppingRule;
 use super::table::{Matrix, Scale, one_or_many};
 use super::texts::experiments;
-use super::{Chapter, External, Profile, Timeout};
+use super::{External, Profile, Timeout};
 use crate::error::{Error, InputError, Result};
 use crate::input::{locate, locate_in, parse, read_text};
 use crate::lab::Lab;
+use crate::shell;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
@@ -73,29 +41,47 @@ pub(super) const REFERENCE_SPP: &str = "reference-spp";
 /// Other names in a folder of results, which no experiment may have.
 const TAKEN: &[&str] = &["CLAIMS.md", "benches", "check", "claims", "earlier", "guards", "references", "report.html"];
 
-/// A feature that not every build has.
-pub(super) struct Feature {
-    /// Its name in an experiment's `requires`.
-    pub(super) name: &'static str,
-    /// Whether this build has it.
-    pub(super) is_there: bool,
-    /// How to get a build that has it.
-    pub(super) takes: &'static str,
+/// The features that not every build has, and whether this one has them. An experiment may require them.
+pub(super) const FEATURES: [(&str, bool); 2] =
+    [("openmp", cfg!(feature = "openmp")), ("more-pools", cfg!(feature = "more-pools"))];
+
+/// A chapter of the report page. Each experiment names its chapter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Chapter {
+    Accuracy,
+    Scheduling,
+    /// Guards, and inputs on which simpler programs fail.
+    HardInputs,
+    Effects,
+    /// Experiments that name no chapter.
+    #[default]
+    Others,
 }
 
-/// The features that an experiment may require.
-pub(super) const FEATURES: &[Feature] = &[
-    Feature {
-        name: "openmp",
-        is_there: cfg!(feature = "openmp"),
-        takes: "a program built by `cargo run --release --features openmp -- ...`",
-    },
-    Feature {
-        name: "more-pools",
-        is_there: cfg!(feature = "more-pools"),
-        takes: "a program built by `cargo run --release --features more-pools -- ...`",
-    },
-];
+impl Chapter {
+    pub const ALL: [Self; 5] = [Self::Accuracy, Self::Scheduling, Self::HardInputs, Self::Effects, Self::Others];
+
+    pub fn anchor(self) -> &'static str {
+        match self {
+            Self::Accuracy => "chapter-accuracy",
+            Self::Scheduling => "chapter-scheduling",
+            Self::HardInputs => "chapter-hard-inputs",
+            Self::Effects => "chapter-effects",
+            Self::Others => "chapter-others",
+        }
+    }
+
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Accuracy => "What accuracy costs in time",
+            Self::Scheduling => "Who runs what when: scheduling",
+            Self::HardInputs => "What stays right on hard inputs",
+            Self::Effects => "Effects only where a scene calls for them",
+            Self::Others => "Other experiments",
+        }
+    }
+}
 
 /// Files that a sweep may keep beside its rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -103,7 +89,6 @@ pub(super) const FEATURES: &[Feature] = &[
 pub enum Keep {
     /// The image of each cell's first repetition.
     Images,
-    /// The trace of each run.
     Traces,
     /// The costs of handing out empty jobs, which the simulator needs.
     Calibration,
@@ -111,17 +96,14 @@ pub enum Keep {
     Messages,
 }
 
-/// An experiment as its file defines it.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Definition {
     /// Name: the file's stem.
     #[serde(skip)]
     pub name: String,
-    /// The file's text.
     #[serde(skip)]
     pub text: String,
-    /// The file's name, for errors.
     #[serde(skip)]
     pub file: String,
     /// The name or path by which it was loaded.
@@ -130,16 +112,12 @@ pub struct Definition {
     /// The values that `--set` gave; with any, no line of the text is one of the file.
     #[serde(skip)]
     pub(super) set: Vec<String>,
-    /// The tables in which its names are looked up.
     #[serde(skip, default = "Lab::built_in")]
     pub lab: Arc<Lab>,
-    /// Heading.
     pub title: String,
     pub question: String,
-    /// How to read the results.
     #[serde(default)]
     pub analysis: String,
-    /// The chapter of the report page that it belongs to.
     #[serde(default)]
     pub chapter: Chapter,
     /// Its place in the chapter. Experiments without a place follow those with one, by name.
@@ -148,18 +126,15 @@ pub struct Definition {
     /// The number of the finding, from 1, that stands at the beginning of the page.
     #[serde(default, rename = "in-short")]
     pub in_short: Option<NonZeroUsize>,
-    /// Names of the figures that the report draws.
     pub figures: Vec<String>,
     /// Parameters of figures, by figure; each figure reads its own table.
     #[serde(default)]
     pub figure: BTreeMap<String, toml::Table>,
-    /// The files that are kept beside the rows.
     #[serde(default)]
     pub keep: Vec<Keep>,
     /// Whether samplers may draw other random numbers in each run, so that no checksum can be expected.
     #[serde(default)]
     pub unverified: bool,
-    /// The time limit of each cell, where the profile sets none.
     pub(super) timeout: Option<Timeout>,
     /// Features that not every build has; without them the experiment is left out.
     #[serde(default)]
@@ -169,7 +144,6 @@ pub struct Definition {
     /// What runs side by side.
     #[serde(default)]
     pub(super) compare: Vec<Compare>,
-    /// Other programs.
     #[serde(default)]
     pub external: Vec<External>,
     reference: Option<ReferenceTable>,
@@ -190,7 +164,6 @@ struct ReferenceTable {
 }
 
 impl Definition {
-    /// Reads a definition from its text.
     pub fn from_text(lab: &Arc<Lab>, name: &str, file: &str, text: &str) -> Result<Self> {
         let mut definition: Self = parse(text, file)?;
         definition.lab = Arc::clone(lab);
@@ -209,7 +182,6 @@ impl Definition {
         experiments().iter().chain(lab.own_experiments()).map(|(name, text)| (name.as_str(), text.as_str()))
     }
 
-    /// Loads the definition with that name, or from the file at that path.
     pub fn load(lab: &Arc<Lab>, name_or_path: &str) -> Result<Self> {
         let definition = Self { asked: name_or_path.to_string(), ..Self::find(lab, name_or_path)? };
         let name = &definition.name;
@@ -235,7 +207,6 @@ impl Definition {
         Self::from_text(lab, &stem, name_or_path, &read_text(path)?)
     }
 
-    /// The estimator that is named first; empty if none is named.
     pub fn first_estimator(&self) -> &str {
         self.matrix.iter().filter_map(|matrix| matrix.values("estimator")).flatten().next().map_or("", String::as_str)
     }
@@ -253,13 +224,12 @@ impl Definition {
     }
 
     /// The first required feature that this build lacks, and how to get it.
-    pub fn missing_feature(&self) -> Option<(&str, &'static str)> {
-        let required = |feature: &&Feature| self.requires.iter().any(|name| name == feature.name);
-        let missing = FEATURES.iter().filter(required).find(|feature| !feature.is_there);
-        missing.map(|feature| (feature.name, feature.takes))
+    pub fn missing_feature(&self) -> Option<(&'static str, String)> {
+        let required = |name: &str| self.requires.iter().any(|required| required == name);
+        let missing = FEATURES.iter().find(|(name, is_there)| required(name) && !is_there);
+        missing.map(|(name, _)| (*name, shell::build_with(name)))
     }
 
-    /// Whether these files are kept beside the rows.
     pub fn keeps(&self, what: Keep) -> bool {
         self.keep.contains(&what)
     }

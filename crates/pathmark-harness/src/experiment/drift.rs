@@ -15,7 +15,6 @@ const SUSPICIOUS: f64 = 0.25;
 /// The same for an increase of the processor time, which is steadier.
 const SLOW: f64 = 0.15;
 
-/// The times of each cell so far.
 pub(super) struct Drift(HashMap<String, Times>);
 
 #[derive(Default)]

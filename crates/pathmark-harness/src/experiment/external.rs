@@ -25,14 +25,12 @@ use std::process::{Command, Stdio};
 /// The value of columns that have no meaning for other programs.
 pub const EXTERNAL: &str = "external";
 
-/// Another renderer, with the settings of its cells.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct External {
     pub name: String,
     /// The program and its arguments; `{spp}`, `{seed}` and `{out}` must be among them, `{width}`, `{height}` and `{folder}` may be.
     pub command: Vec<String>,
-    /// The command that builds it, once before the sweep.
     #[serde(default)]
     pub build: Vec<String>,
     scene: String,
@@ -44,23 +42,18 @@ pub struct External {
     format: String,
     #[serde(default)]
     curve: bool,
-    #[serde(default = "one_sample")]
+    #[serde(default = "one")]
     fewest_spp: u32,
 }
 
-fn one() -> usize {
-    1
-}
-
-fn one_sample() -> u32 {
-    1
+fn one<T: From<u8>>() -> T {
+    1.into()
 }
 
 fn pfm() -> String {
     "pfm".to_string()
 }
 
-/// The command with its placeholders filled in.
 pub(super) fn filled(command: &[String], values: &[(&str, String)]) -> Vec<String> {
     let fill = |word: &String| {
         values.iter().fold(word.clone(), |word, (name, value)| word.replace(&format!("{{{name}}}"), value))
@@ -86,7 +79,6 @@ impl External {
         progress.note(&format!("{} is left out: {}: {problem}", self.name, command.join(" ")));
     }
 
-    /// Refuses an entry that cannot be run.
     fn check(&self) -> Result<()> {
         for placeholder in ["{spp}", "{seed}", "{out}"] {
             if !self.command.iter().any(|word| word.contains(placeholder)) {
@@ -111,7 +103,6 @@ impl External {
 }
 
 impl Definition {
-    /// The cells of the other programs.
     pub(super) fn external_cells(&self, profile: Profile) -> Result<Vec<Cell>> {
         let scale = self.scale(profile)?;
         let (mut cells, mut places) = (Vec::<Cell>::new(), HashMap::new());

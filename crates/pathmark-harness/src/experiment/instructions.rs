@@ -16,11 +16,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// The file's name.
 pub(super) const INSTRUCTIONS: &str = "instructions.csv";
 const COUNTER: &str = "valgrind";
 
-/// A line of the file.
 #[derive(Debug, Serialize, Deserialize)]
 struct Row {
     cell: String,
@@ -55,7 +53,7 @@ impl Sweep<'_> {
                 progress.advance(done);
             }
             progress.end();
-            write(&folder.join(INSTRUCTIONS), &counts)?;
+            write(&folder.join(INSTRUCTIONS), counts)?;
         }
         Ok(())
     }
@@ -82,10 +80,8 @@ fn collected(said: &str) -> Option<u64> {
     said.lines().find_map(|line| line.split_once("Collected : ")?.1.trim().parse().ok())
 }
 
-/// Writes the counts of a sweep.
-fn write(path: &Path, counts: &BTreeMap<String, u64>) -> Result<()> {
-    let row = |(cell, instructions): (&String, &u64)| Row { cell: cell.clone(), instructions: *instructions };
-    csv_file::write(path, counts.iter().map(row))
+fn write(path: &Path, counts: BTreeMap<String, u64>) -> Result<()> {
+    csv_file::write(path, counts.into_iter().map(|(cell, instructions)| Row { cell, instructions }))
 }
 
 /// Reads the counts beside a file of rows; empty if nothing was counted.
@@ -116,7 +112,7 @@ mod tests {
         assert!(read(&rows).unwrap().is_empty());
         let counts = BTreeMap::from([("a,b".to_string(), 7), ("c".to_string(), u64::MAX)]);
         let path = folder.path().join(INSTRUCTIONS);
-        write(&path, &counts).unwrap();
+        write(&path, counts.clone()).unwrap();
         assert_eq!(read(&rows).unwrap(), counts);
         std::fs::write(&path, "cell,instructions\na,1\nb,-1\n").unwrap();
         let error = read(&rows).unwrap_err();

@@ -3,7 +3,6 @@
 use super::table::REQUIRED;
 use crate::measure::SETTINGS;
 
-/// Key and meaning of all fields except the axes.
 const KEYS: &[(&str, &str)] = &[
     ("title", "heading of its section [required]"),
     ("question", "question that it answers [required]"),

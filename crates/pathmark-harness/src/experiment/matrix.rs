@@ -10,12 +10,10 @@ use crate::sampling::{SAMPLERS, is_deterministic};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-/// The value that leaves the choice to the program.
 const FITTING: &str = "fitting";
 
 /// Most cells of a sweep: checking and comparing more takes minutes before the first one runs.
 pub(super) const LARGEST_CELLS: u64 = 10_000;
-/// Most repetitions of a cell.
 pub const LARGEST_REPETITIONS: u32 = 10_000;
 
 /// Distinct cells. Two words may mean the same run, such as `fitting` and the name of the profile that fits a scene; a
@@ -23,7 +21,6 @@ pub const LARGEST_REPETITIONS: u32 = 10_000;
 #[derive(Default)]
 struct Cells {
     list: Vec<Cell>,
-    /// The places of cells in the list, by key.
     places: HashMap<String, usize>,
     known: HashSet<(ImageKey, ScheduleKey)>,
 }
@@ -56,10 +53,8 @@ impl Definition {
             let error = InputError::new("repetitions", repetitions.to_string(), "is out of range");
             return Err(self.located(profile, error.allowed(format!("1 to {LARGEST_REPETITIONS}"))));
         }
-        if let Some(unknown) =
-            self.requires.iter().find(|name| !FEATURES.iter().any(|feature| feature.name == name.as_str()))
-        {
-            let names: Vec<&str> = FEATURES.iter().map(|feature| feature.name).collect();
+        if let Some(unknown) = self.requires.iter().find(|name| !FEATURES.iter().any(|(known, _)| known == name)) {
+            let names: Vec<&str> = FEATURES.iter().map(|(name, _)| *name).collect();
             let error = InputError::new("requires", unknown, "there is no feature of that name");
             return Err(self.located(profile, error.allowed(names.join(", "))));
         }
@@ -89,7 +84,6 @@ impl Definition {
     }
 }
 
-/// The combinations of one matrix in one profile.
 struct Product<'a> {
     definition: &'a Definition,
     profile: Profile,
@@ -141,7 +135,6 @@ impl<'a> Product<'a> {
         Err(self.at_field(error.allowed(format!("at most {LARGEST_CELLS} combinations")).into()))
     }
 
-    /// Adds the cells of all combinations of these axes.
     fn add(&self, axes: &[Setting], settings: &Settings, cells: &mut Cells) -> Result<()> {
         let Some((axis, inner)) = axes.split_first() else { return self.add_cell(settings.clone(), cells) };
         if self.written(axis).is_none_or(Vec::is_empty) {

@@ -20,10 +20,8 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// The largest number of missing parts that are named.
 const MOST_TOLD: usize = 20;
 
-/// A part of one sweep.
 struct Part {
     folder: PathBuf,
     shard: SweepShard,
@@ -61,7 +59,6 @@ impl Part {
 pub struct MergedSweep {
     /// The folder from which a report is made.
     pub out: PathBuf,
-    /// The experiment.
     pub name: String,
     pub rows: usize,
     /// Parts that are missing, such as `2/4`, or not finished.
@@ -149,7 +146,6 @@ pub fn merge_sweeps(folders: &[PathBuf], out: &Path, partial: bool, command: &st
 }
 
 impl MergedSweep {
-    /// The folder of its rows.
     pub fn folder(&self) -> PathBuf {
         self.out.join(&self.name)
     }
@@ -193,7 +189,6 @@ fn check(parts: &[Part]) -> Result<Vec<String>> {
     Ok(missing.take(MOST_TOLD).collect())
 }
 
-/// The description of the merged rows.
 fn run_of(parts: &[Part], command: &str) -> RunFile {
     // Intervals that hold at every look are valid for any part, the usual ones only where no part had a goal.
     let mut goals: Vec<&str> = parts.iter().filter_map(|part| part.run.until.as_deref()).collect();
@@ -215,7 +210,6 @@ fn run_of(parts: &[Part], command: &str) -> RunFile {
     }
 }
 
-/// Groups the parts by machine.
 fn by_machine(parts: Vec<Part>) -> Vec<Vec<Part>> {
     let mut machines: Vec<Vec<Part>> = Vec::new();
     for part in parts {
@@ -228,7 +222,6 @@ fn by_machine(parts: Vec<Part>) -> Vec<Vec<Part>> {
     machines
 }
 
-/// Writes the folder of one sweep.
 fn write(parts: &[Part], rows: &[Record], sweep: &MergedSweep, command: &str) -> Result<()> {
     let folder = sweep.folder();
     let make = |path: &Path| fs::create_dir_all(path).map_err(|e| Error::system("creating", path, e));

@@ -3,11 +3,8 @@
 //! To add one, write `experiments/NAME.toml`: the build embeds every file there, and `pathmark run path/to/NAME.toml` runs any other.
 
 mod baseline;
-mod calibration_file;
 mod cell;
-mod cell_diff;
 mod cell_process;
-mod chapter;
 mod comparisons;
 mod conversation;
 mod count_diff;
@@ -21,7 +18,6 @@ mod keys;
 mod matrix;
 mod merge_sweeps;
 mod object_pixels;
-mod options;
 mod overrides;
 mod pairs;
 mod plan;
@@ -33,10 +29,8 @@ mod profile;
 mod ranking;
 mod records_file;
 mod reference;
-mod reference_halves;
 mod run_file;
 mod running;
-mod scene_version;
 #[cfg(test)]
 mod setting_tests;
 mod shuffle;
@@ -49,20 +43,17 @@ mod texts;
 mod time_limit;
 mod together;
 
+pub use crate::measure::read_calibration;
 pub use baseline::baseline_folder;
-pub use calibration_file::read_calibration;
-pub use cell::{Cell, CellPoint, trace_file};
-pub use cell_diff::{CellDiff, Change};
+pub use cell::{Cell, CellPoint, SceneVersion, trace_file};
 pub use cell_process::{CELL_ABOUT, CellJob, PointJob, child_main};
-pub use chapter::Chapter;
 pub use count_diff::{CountDiff, CountDiffs, count_diff};
-pub use definition::{Definition, Keep};
-pub use diff::{Across, Diff, diff, parse_share};
+pub use definition::{Chapter, Definition, Keep};
+pub use diff::{Across, CellDiff, Change, Diff, diff, parse_share};
 pub use external::{EXTERNAL, External};
 pub use keys::keys;
 pub use matrix::LARGEST_REPETITIONS;
 pub use merge_sweeps::{MergedSweep, merge_sweeps};
-pub use options::Options;
 pub use plan::{Plan, Prices};
 pub use power::Power;
 pub use pricing::{Paid, Pilot, Piloted, law_of, pay};
@@ -70,25 +61,22 @@ pub use processes::MESSAGES;
 pub use profile::Profile;
 pub use ranking::{ImageRanking, Place, Ranking, ranking};
 pub use records_file::{RecordsFile, read_records};
-pub use reference::{HalfFile, Reference, reference_seed, wanted_references};
-pub use reference_halves::{ReferenceError, check_until, refine_reference, render_reference};
+pub use reference::{
+    HalfFile, Reference, ReferenceError, check_until, reference_seed, refine_reference, render_reference,
+    wanted_references,
+};
 pub use run_file::{MACHINE, RunFile, read_run_file};
-pub use scene_version::SceneVersion;
 pub use sides::{Compared, FailedCell, Lost};
 pub use stopping_rule::{Goal, MOST_REPETITIONS, StoppingRule};
-pub use sweep::{Summary, Sweep};
+pub use sweep::{Options, Summary, Sweep};
 pub use sweep_shard::SweepShard;
 pub use texts::{Named, Texts, claims, embed, experiments};
 pub use time_limit::{TIMED_OUT, Timeout};
 
 /// Receives the progress of long work. The command line implements it.
 pub trait Progress: Sync {
-    /// Work of `total` units begins.
     fn begin(&self, title: &str, total: u64);
-    /// `done` units are done.
     fn advance(&self, done: u64);
-    /// A line for the user.
     fn note(&self, text: &str);
-    /// The work is over.
     fn end(&self);
 }

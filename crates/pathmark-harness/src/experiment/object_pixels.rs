@@ -14,7 +14,6 @@ fn index(scene: &Scene, object: &str) -> Result<u32> {
     Err(InputError::new("object", object, problem).allowed(names.join(", ")).into())
 }
 
-/// Refuses an object that the scene does not have.
 pub(super) fn check_object(setup: &Setup, object: &str) -> Result<()> {
     match setup.scene() {
         Some((scene, _)) => index(scene, object).map(|_| ()),

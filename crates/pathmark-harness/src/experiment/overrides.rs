@@ -80,12 +80,16 @@ fn matrices(table: &mut Table) -> Vec<&mut Table> {
 /// The value in a definition: one size, or a list of words, numbers or switches.
 fn value_of(axis: &Setting, values: &str) -> Result<Value> {
     let each = values.split(',').map(str::trim);
+    let switch = |value: &str| -> Result<Value> {
+        let parsed = value.parse().map(Value::Boolean);
+        parsed.map_err(|_| InputError::new(axis.name, value, "is not true or false").into())
+    };
     Ok(match axis.kind {
         Kind::Size => {
             let (width, height) = parse_size(values)?;
             Value::Array(vec![Value::Integer(width.into()), Value::Integer(height.into())])
         }
-        Kind::Switch => Value::Array(each.map(|value| switch(axis.name, value)).collect::<Result<_>>()?),
+        Kind::Switch => Value::Array(each.map(switch).collect::<Result<_>>()?),
         Kind::Name | Kind::Auto => Value::Array(each.map(Value::from).collect()),
         Kind::Workers => {
             let workers = |value: &str| if value == "all" { Ok(value.into()) } else { number(axis.name, value) };
@@ -95,11 +99,6 @@ fn value_of(axis: &Setting, values: &str) -> Result<Value> {
             Value::Array(each.map(|value| number(axis.name, value)).collect::<Result<_>>()?)
         }
     })
-}
-
-fn switch(name: &str, value: &str) -> Result<Value> {
-    let parsed = value.parse().map(Value::Boolean);
-    parsed.map_err(|_| InputError::new(name, value, "is not true or false").into())
 }
 
 fn number(name: &str, value: &str) -> Result<Value> {

@@ -16,7 +16,6 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Seconds of rendering for each kind of image.
 const RENDER_S: f64 = 0.01;
 /// Seconds after which no other kind is rendered.
 const MOST_S: f64 = 10.0;
@@ -30,22 +29,18 @@ const BYTES: [u64; 4] = [760, 60, 12, 52];
 /// The estimated cost of a sweep, from its first row to its last.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Plan {
-    /// The experiment.
     pub name: String,
     pub cells: usize,
     pub rows: usize,
     /// Estimated seconds of the references that are neither in an earlier plan nor in the cache.
     pub references_s: f64,
-    /// Number of halves of those references.
     pub halves: usize,
-    /// Estimated seconds of all rows.
     pub cells_s: f64,
     /// Estimated bytes of rows, traces, images and references, without figures.
     pub bytes: u64,
 }
 
 impl Plan {
-    /// Estimated seconds.
     pub fn seconds(&self) -> f64 {
         self.references_s + self.cells_s
     }
@@ -55,7 +50,6 @@ impl Plan {
 pub struct Prices<'a> {
     lab: &'a Lab,
     begun: Instant,
-    /// Kinds of images, each with the seconds of a sample.
     kinds: HashMap<Settings, f64>,
     /// Number of kinds that were not rendered for lack of time; the mean of the others stands for them.
     pub guessed: usize,
@@ -63,12 +57,10 @@ pub struct Prices<'a> {
 }
 
 impl<'a> Prices<'a> {
-    /// Starts with no kinds of images.
     pub fn new(lab: &'a Lab) -> Self {
         Self { lab, begun: Instant::now(), kinds: HashMap::new(), guessed: 0, planned: HashSet::new() }
     }
 
-    /// The number of known kinds of images.
     pub fn kinds(&self) -> usize {
         self.kinds.len()
     }
@@ -96,7 +88,7 @@ impl<'a> Prices<'a> {
         let fewest = with(spp)?.fewest_spp();
         let setup = with(fewest)?;
         // Without the GPU that it needs, a cell renders nothing.
-        if setup.scene().is_some_and(|(_, choice)| choice.lacks_device()) {
+        if setup.scene().is_some_and(|(_, choice)| choice.plan.lacks_device()) {
             return Ok(0.0);
         }
         // The first run of a setup builds its kernel, and the first of a process is slower than the rest.
@@ -195,7 +187,7 @@ mod tests {
         let lab = Lab::built_in();
         let definition = Definition::from_text(&lab, "x", "x.toml", text).unwrap();
         let folder = tempfile::tempdir().unwrap();
-        let options = Options::usual(folder.path().to_path_buf());
+        let options = Options { out: folder.path().to_path_buf(), ..Options::default() };
         let sweep = Sweep::new(&definition, &options, &mut Files::default()).unwrap();
         let plan = sweep.plan(&mut Prices::new(&lab)).unwrap();
         assert_eq!((plan.cells, plan.rows), (1, 6));

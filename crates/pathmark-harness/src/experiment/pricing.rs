@@ -14,34 +14,26 @@ use crate::lab::Lab;
 use crate::measure::{LARGEST_BYTES, Rounds, Settings, TimingConcerns};
 use crate::sampling::{REFERENCE_SEEDS, is_spread};
 
-/// The first seed of pilots.
 const PILOT_SEEDS: u64 = REFERENCE_SEEDS >> 1;
 /// Points of each seed's curve, each with twice the samples of the one before: enough to fit an exponent.
 const POINTS: u32 = 5;
 
-/// The size of a pilot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pilot {
-    /// Samples per pixel of each seed.
     pub spp: u32,
     pub seeds: u32,
 }
 
-/// The result of a pilot.
 pub struct Piloted {
-    /// Estimates of error and time.
     pub renderer: Renderer,
     /// The tail of the pixels' values over seeds. If one value of one pixel makes up much of the variance, the price
     /// depends on whether the pilot met it.
     pub tail: Tail,
-    /// Doubts about the times of its seeds.
     pub doubts: TimingConcerns,
 }
 
-/// Measured time and error of two renders.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Paid {
-    /// Mean seconds of the two renders.
     pub seconds: f64,
     /// Root of half the mean squared difference of their images: the error of either, if there is no bias.
     pub rmse: f64,
@@ -112,7 +104,6 @@ impl Pilot {
     }
 }
 
-/// The tail of each pixel's values over the seeds' images.
 fn tail_over_seeds(images: &[Vec<f64>]) -> Option<Tail> {
     let length = images.first()?.len();
     let values: Vec<Vec<f64>> = (0..length).map(|at| images.iter().map(|image| image[at]).collect()).collect();

@@ -8,7 +8,7 @@ use nix::unistd::{Pid, getpgrp, getpid};
 use std::io::{self, ErrorKind, Read, Write};
 use std::mem::MaybeUninit;
 use std::os::unix::process::CommandExt;
-use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, ExitStatus, Output, Stdio};
+use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
@@ -21,11 +21,22 @@ const MOST_BYTES: u64 = 64 << 20;
 pub(super) fn answer(mut command: Command, line: &str, limit: Option<Duration>) -> io::Result<Option<Output>> {
     let streams = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = streams.process_group(0).spawn()?;
-    let (streams, own, line) = (Streams::of(&mut child), pid(&child), line.to_string());
+    let (own, line) = (pid(&child), line.to_string());
+    let (mut input, output, errors) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
+    let heard = move || -> io::Result<[Vec<u8>; 2]> {
+        // Both streams are read concurrently: a full one would block the child.
+        let said = thread::Builder::new().spawn(move || read(errors))?;
+        // If the child has died early, this write fails; its exit status tells more.
+        input.as_mut().map_or(Ok(()), |input| writeln!(input, "{line}")).ok();
+        let output = read(output)?;
+        let errors = said.join().unwrap_or_else(|_| Ok(Vec::new()))?;
+        wait_for_end(own)?;
+        Ok([output, errors])
+    };
     let (tell, told) = channel();
     // Another thread hears the child, so that this one can wait for no longer than the limit. It ends with the streams,
     // which processes outside the group may still hold.
-    let listener = thread::Builder::new().spawn(move || _ = tell.send(streams.heard(own, &line)));
+    let listener = thread::Builder::new().spawn(move || _ = tell.send(heard()));
     let wait = || limit.map_or_else(|| told.recv().map_err(Into::into), |limit| told.recv_timeout(limit));
     let heard = listener.and_then(|_| match wait() {
         Ok(heard) => heard.map(Some),
@@ -43,33 +54,6 @@ pub(super) fn killed(mut child: Child) -> io::Result<ExitStatus> {
     child.wait()
 }
 
-/// The streams of a child.
-struct Streams {
-    input: Option<ChildStdin>,
-    output: Option<ChildStdout>,
-    errors: Option<ChildStderr>,
-}
-
-impl Streams {
-    fn of(child: &mut Child) -> Self {
-        Self { input: child.stdin.take(), output: child.stdout.take(), errors: child.stderr.take() }
-    }
-
-    /// Writes a line to the child, reads both of its streams to their ends and waits for its end.
-    fn heard(self, child: Pid, line: &str) -> io::Result<[Vec<u8>; 2]> {
-        let Self { mut input, output, errors } = self;
-        // Both streams are read concurrently: a full one would block the child.
-        let said = thread::Builder::new().spawn(move || read(errors))?;
-        // If the child has died early, this write fails; its exit status tells more.
-        input.as_mut().map_or(Ok(()), |input| writeln!(input, "{line}")).ok();
-        let output = read(output)?;
-        let errors = said.join().unwrap_or_else(|_| Ok(Vec::new()))?;
-        wait_for_end(child)?;
-        Ok([output, errors])
-    }
-}
-
-/// Reads a stream to its end and returns its beginning.
 fn read(stream: Option<impl Read>) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     if let Some(mut stream) = stream {

@@ -5,11 +5,11 @@ use super::table::Scale;
 use crate::error::{InputError, Result};
 use serde::Deserialize;
 
-/// The size at which an experiment is run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Profile {
     /// Small images: minutes.
+    #[default]
     Quick,
     /// Larger images, or more of them, than the question needs: up to hours.
     Full,
@@ -18,7 +18,6 @@ pub enum Profile {
 }
 
 impl Profile {
-    /// Every profile.
     pub const ALL: [Self; 3] = [Self::Quick, Self::Full, Self::Reports];
 
     /// Its name in files and, after `--`, on the command line.
@@ -30,14 +29,12 @@ impl Profile {
         }
     }
 
-    /// The profile of that name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|profile| profile.name() == name)
     }
 }
 
 impl Definition {
-    /// The profiles that the definition has.
     pub fn profiles(&self) -> impl Iterator<Item = Profile> {
         Profile::ALL.into_iter().filter(|profile| self.table(*profile).is_some())
     }
@@ -54,18 +51,13 @@ impl Definition {
         }
     }
 
-    /// The table of a profile.
     pub(super) fn scale(&self, profile: Profile) -> Result<&Scale> {
         self.table(profile).ok_or_else(|| {
             let problem = format!("the experiment {} has no table [{}]", self.name, profile.name());
-            InputError::new("profile", profile.name(), problem).allowed(self.options()).in_file(&self.file, None).into()
+            let options: Vec<String> = self.profiles().map(|profile| format!("--{}", profile.name())).collect();
+            let error = InputError::new("profile", profile.name(), problem).allowed(options.join(", "));
+            error.in_file(&self.file, None).into()
         })
-    }
-
-    /// The command-line options for the profiles that the definition has.
-    fn options(&self) -> String {
-        let options: Vec<String> = self.profiles().map(|profile| format!("--{}", profile.name())).collect();
-        options.join(", ")
     }
 
     /// Refuses a matrix that names a missing profile, and a profile without a matrix.

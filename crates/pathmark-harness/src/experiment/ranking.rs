@@ -4,8 +4,8 @@
 //! of them. Schedules without a common block, such as those of two parts of a sweep, are ranked apart.
 
 use super::Cell;
-use super::cell_diff::{Times, is_in_pairs, level_of, of_processes, turn};
 use super::definition::Definition;
+use super::diff::{Times, is_in_pairs, level_of, of_processes, turn};
 use super::profile::Profile;
 use super::records_file::read_records;
 use super::run_file::{MACHINE, read_run_file};
@@ -32,7 +32,6 @@ use std::sync::Arc;
 /// The probability that any reported order is wrong.
 pub(super) const MISS: f64 = 0.05;
 
-/// A schedule's place among those of its image.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Place {
     /// The schedule: the part of its cells' names after the image.
@@ -51,29 +50,23 @@ pub struct Place {
 /// The schedules of an image that were measured together, the fastest first.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ImageRanking {
-    /// The image, in one word.
     pub image: String,
     /// The number of this part of the image's schedules, from 1, and the number of parts.
     pub part: [usize; 2],
-    /// The schedules.
     pub places: Vec<Place>,
     /// The schedules that are not known to be slower than another: with 95 % confidence, for all images together, the
     /// fastest is among them. Schedules whose matrix limits their repetitions are not compared.
     pub fastest: Vec<String>,
-    /// How many schedules were compared for `fastest`.
     pub compared: usize,
 }
 
-/// The schedules of all images of an experiment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ranking {
-    /// Image by image, and part by part.
     pub images: Vec<ImageRanking>,
     /// The cells that have no time, because their rows failed.
     pub without_time: Vec<String>,
     /// The fewest repetitions that can tell any two schedules apart.
     pub least_repetitions: u32,
-    /// Doubts about all times.
     pub doubts: TimingConcerns,
 }
 
@@ -136,7 +129,6 @@ pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Rank
     })
 }
 
-/// How many schedules are compared with each other.
 fn compared(schedules: &Schedules) -> usize {
     schedules.values().filter(|own| !own.is_shown_only).count()
 }
@@ -148,7 +140,6 @@ fn shown_only(lab: &Arc<Lab>, folder: &Path, profile: &str) -> BTreeSet<String> 
     capped.flat_map(|cell| cell.points).map(|point| point.id).collect()
 }
 
-/// The cells of the definition that lies beside rows.
 fn cells(lab: &Arc<Lab>, folder: &Path, profile: &str) -> Result<Vec<Cell>> {
     let path = folder.join("experiment.toml");
     let name = folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
@@ -156,7 +147,6 @@ fn cells(lab: &Arc<Lab>, folder: &Path, profile: &str) -> Result<Vec<Cell>> {
     definition.cells(Profile::from_name(profile).unwrap_or(Profile::Quick))
 }
 
-/// The keys of rows that pass the filters.
 fn wanted(lab: &Arc<Lab>, folder: &Path, profile: &str, filters: &[String]) -> Result<BTreeSet<String>> {
     let mut wanted = BTreeSet::new();
     for cell in cells(lab, folder, profile)? {
@@ -197,7 +187,6 @@ fn sequence_level(schedules: usize, miss: f64) -> f64 {
     1.0 - 2.0 * miss / (schedules * schedules.saturating_sub(1)).max(1) as f64
 }
 
-/// The fewest repetitions that can tell any two of `schedules` schedules apart.
 fn least(schedules: usize, miss: f64, stopping: Stopping) -> u32 {
     if stopping == Stopping::Fixed {
         return least_blocks(schedules, miss);

@@ -13,7 +13,6 @@ use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// Name of the file of an experiment's rows.
 pub(super) const RECORDS: &str = "records.csv";
 
 /// Versions of the columns that can be read. The older ones only lack columns that may be empty.
@@ -142,7 +141,6 @@ fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
 /// Columns of seconds that are differences of others, so that rounding may leave them below 0.
 const DIFFERENCES: [&str; 3] = ["idle_between_jobs_s", "idle_tail_s", "other_cpu_s"];
 
-/// The columns of seconds, with their places in a row.
 fn times(columns: &StringRecord) -> Vec<(usize, &'static str)> {
     let in_seconds = |name: &str| COLUMNS.iter().find(|own| own.name == name && own.unit() == Some("seconds"));
     let found = columns.iter().enumerate().filter_map(|(place, name)| Some((place, in_seconds(name)?.name)));
@@ -184,9 +182,11 @@ impl RecordsFile {
     /// Opens an existing file and returns its rows, except a half-written last row and failed rows, which are run
     /// again.
     pub fn resume(path: &Path) -> Result<(Self, Vec<Record>)> {
-        let file =
-            OpenOptions::new().read(true).write(true).open(path).map_err(|e| Error::system("opening", path, e))?;
-        let locked = Self::locked(path, file)?;
+        let open = || {
+            let file = OpenOptions::new().read(true).write(true).open(path);
+            Self::locked(path, file.map_err(|e| Error::system("opening", path, e))?)
+        };
+        let locked = open()?;
         let bytes = std::fs::read(path).map_err(|e| Error::system("reading", path, e))?;
         let complete = complete_part(&bytes, path)?;
         let mut records = parse(complete, path)?;
@@ -203,19 +203,15 @@ impl RecordsFile {
             bytes.extend(row_bytes(record, index == 0).map_err(|e| Error::system("writing", path, e))?);
         }
         atomic_file::write(path, |out| out.write_all(&bytes))?;
-        let file =
-            OpenOptions::new().read(true).write(true).open(path).map_err(|e| Error::system("opening", path, e))?;
-        Ok((Self::locked(path, file)?, records))
+        Ok((open()?, records))
     }
 
-    /// Whether there is a finished row after the header.
     pub fn has_rows(path: &Path) -> Result<bool> {
         let bytes = std::fs::read(path).map_err(|e| Error::system("reading", path, e))?;
         let complete = complete_part(&bytes, path)?;
         Ok(csv::Reader::from_reader(complete.as_bytes()).records().next().is_some())
     }
 
-    /// Refuses a file that a sweep is writing.
     pub fn check_idle(path: &Path) -> Result<()> {
         let file = File::open(path).map_err(|e| Error::system("opening", path, e))?;
         Self::locked(path, file).map(|_| ())

@@ -11,13 +11,10 @@ use std::path::Path;
 use std::process;
 use std::time::SystemTime;
 
-/// The file's name.
 pub const MACHINE: &str = "machine.toml";
 
-/// The description that is written beside the rows.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct RunFile {
-    /// The command that made the rows.
     pub command: String,
     /// Name and version of the program; the commit of Pathmark's own sources is the machine's. Empty in old files.
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -25,7 +22,6 @@ pub struct RunFile {
     /// The name or path by which the command loaded the experiment; empty in old files.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub experiment: String,
-    /// The values that `--set` gave.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub set: Vec<String>,
     /// `quick`, `full` or `reports`.
@@ -51,7 +47,6 @@ pub struct RunFile {
     pub uncapped: bool,
     /// SHA-256 of the definition's text, shortened to 16 hexadecimal digits.
     pub definition_hash: String,
-    /// The machine and the build.
     pub machine: Machine,
 }
 
@@ -60,7 +55,6 @@ fn sweep_number() -> String {
     digest::of_text(&format!("{:?} {}", SystemTime::now(), process::id()))
 }
 
-/// Reads a `machine.toml`.
 pub fn read_run_file(path: &Path) -> Result<RunFile> {
     parse(&read_text(path)?, &path.display().to_string())
 }
@@ -68,24 +62,10 @@ pub fn read_run_file(path: &Path) -> Result<RunFile> {
 impl RunFile {
     /// The description of a measurement without a definition, on this machine.
     pub fn of_now(command: String) -> Self {
-        Self {
-            command,
-            program: String::new(),
-            experiment: String::new(),
-            set: Vec::new(),
-            profile: Profile::Quick.name().to_string(),
-            shard: None,
-            baseline: None,
-            sweep: None,
-            rows: None,
-            until: None,
-            uncapped: false,
-            definition_hash: String::new(),
-            machine: Machine::look(),
-        }
+        let profile = Profile::Quick.name().to_string();
+        Self { command, profile, machine: Machine::look(), ..Self::default() }
     }
 
-    /// Writes the file.
     pub fn write(&self, path: &Path) -> Result<()> {
         let text = toml::to_string_pretty(self)
             .map_err(|e| InputError::new("machine", "", format!("cannot be written as TOML: {e}")))?;
@@ -129,7 +109,6 @@ impl RunFile {
 }
 
 impl Sweep<'_> {
-    /// The description of its rows: this command, this program and this machine.
     pub(super) fn run_file(&self) -> Result<RunFile> {
         let Self { definition, options, cells, until, .. } = self;
         let repetitions = if until.is_some() { 1 } else { self.repetitions()? };

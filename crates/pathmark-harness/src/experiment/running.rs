@@ -22,13 +22,9 @@ pub(super) struct Running<'a> {
     baseline: Option<Baseline>,
     file: RecordsFile,
     progress: &'a dyn Progress,
-    /// Cells and repetitions that have a row.
     finished: HashSet<(String, u32)>,
-    /// Each cell's number of rows without doubt, or with doubt that a rerun cannot remove, and of other doubtful rows.
-    by_doubt: HashMap<String, [u32; 2]>,
     /// The times of this build, and of the other one if there is one.
     decisions: Decisions,
-    /// The serial run of each cell's image, with the same decomposition if there is one.
     serial: Vec<Option<usize>>,
     /// The first row's checksum of each image.
     checksums: HashMap<String, String>,
@@ -37,9 +33,7 @@ pub(super) struct Running<'a> {
     lowest_seed: Option<u64>,
     /// Pairs of a process, where cells run side by side.
     pairs: u32,
-    /// The next row's number, and the next repetition's.
     order: u64,
-    repetition: u32,
     /// The errors of failed rows, each of which is reported once.
     told: HashSet<String>,
     summary: Summary,
@@ -58,12 +52,10 @@ impl<'a> Running<'a> {
         let summary = Summary {
             folder: folder.clone(),
             rows: done.len(),
-            other_rows: 0,
-            failed: 0,
-            timed_out: 0,
             left_out: LeftOut::of(&done),
             invalid: done.iter().filter_map(|record| record.invalid_samples).sum(),
             doubts: TimingConcerns::of(done.iter().map(|record| record.warnings.as_str())),
+            ..Summary::default()
         };
         let mut running = Self {
             sweep,
@@ -73,7 +65,6 @@ impl<'a> Running<'a> {
             file,
             progress,
             finished: HashSet::new(),
-            by_doubt: HashMap::new(),
             decisions: Decisions::default(),
             serial: serial_runs(&sweep.cells),
             checksums: HashMap::new(),
@@ -83,7 +74,6 @@ impl<'a> Running<'a> {
             lowest_seed: sweep.cells.iter().map(|cell| cell.settings.spec.seed).min(),
             // Failed rows were dropped with their numbers, so the number of rows may be in use already.
             order: done.iter().map(|record| record.run_order + 1).max().unwrap_or(0),
-            repetition: done.iter().map(|record| record.repetition + 1).max().unwrap_or(0),
             told: HashSet::new(),
             summary,
         };
@@ -94,18 +84,13 @@ impl<'a> Running<'a> {
                 running.checksums.entry((*image).to_string()).or_insert_with(|| record.checksum.clone());
             }
             running.note(record);
-            running.decisions.note(record, true);
         }
         running
     }
 
     fn note(&mut self, record: &Record) {
         self.finished.insert((record.cell.clone(), record.repetition));
-        if record.error.is_empty() {
-            let is_doubtful = TimingConcerns::may_pass(&record.warnings);
-            self.by_doubt.entry(record.cell.clone()).or_default()[usize::from(is_doubtful)] += 1;
-        }
-        self.repetition = self.repetition.max(record.repetition + 1);
+        self.decisions.note(record, true);
     }
 
     /// Runs a repetition of a cell and adds the rows that are missing.
@@ -126,7 +111,7 @@ impl<'a> Running<'a> {
             run_baseline()?;
         }
         // A curve that was killed between two rows is rendered again, and only the missing rows are added.
-        let rows = job.run_in_child(limit);
+        let rows = job.run_in_child(None, limit);
         if !other_first {
             run_baseline()?;
         }
@@ -235,7 +220,6 @@ impl<'a> Running<'a> {
         ))
     }
 
-    /// The cells for which the goal is not reached yet.
     pub(super) fn undecided(&self, goal: Goal) -> Vec<usize> {
         match goal {
             Goal::Share(limit) => self.unknown(limit),
@@ -300,34 +284,6 @@ impl<'a> Running<'a> {
         (0..cells.len()).filter(|index| open.contains(index) || beside.contains(index)).collect()
     }
 
-    /// The cells that have fewer than `wanted` rows without doubt because others are doubtful, each with the number
-    /// that it lacks. The serial runs compared with them are included: times are compared within a repetition.
-    pub(super) fn doubtful(&self, wanted: u32) -> Vec<(usize, u32)> {
-        let cells = &self.sweep.cells;
-        let lacks = |cell: &Cell| {
-            let rows = cell.points.iter().filter_map(|point| self.by_doubt.get(&point.id));
-            rows.map(|[sound, doubtful]| cell.repetitions(wanted).saturating_sub(*sound).min(*doubtful))
-                .max()
-                .unwrap_or(0)
-        };
-        let own: Vec<u32> = cells.iter().map(lacks).collect();
-        let mut of_image: HashMap<Settings, u32> = HashMap::new();
-        for (cell, lack) in cells.iter().zip(&own).filter(|(_, lack)| **lack > 0) {
-            let most = of_image.entry(cell.without_schedule()).or_default();
-            *most = (*lack).max(*most);
-        }
-        let of_group = |(cell, own): (&Cell, &u32)| {
-            let compared = || of_image.get(&cell.without_schedule()).copied().unwrap_or(0);
-            if cell.is_serial() { compared() } else { *own }
-        };
-        cells.iter().zip(&own).map(of_group).enumerate().filter(|(_, lack)| *lack > 0).collect()
-    }
-
-    /// The first repetition number that no row has yet.
-    pub(super) fn next_repetition(&self) -> u32 {
-        self.repetition
-    }
-
     /// The outcome, after a check that the file of rows is still this sweep's own.
     pub(super) fn finish(self) -> Result<Summary> {
         self.file.check_own()?;
@@ -338,11 +294,11 @@ impl<'a> Running<'a> {
 /// The serial run of each cell's image, with the same decomposition if there is one. `None` for a serial cell.
 fn serial_runs(cells: &[Cell]) -> Vec<Option<usize>> {
     let mut of_image: HashMap<Settings, Vec<usize>> = HashMap::new();
-    for (index, cell) in cells.iter().enumerate().filter(|(_, cell)| cell.is_serial()) {
+    for (index, cell) in cells.iter().enumerate().filter(|(_, cell)| cell.settings.is_serial()) {
         of_image.entry(cell.without_schedule()).or_default().push(index);
     }
     let serial_of = |own: &Cell| {
-        let serial = of_image.get(&own.without_schedule()).filter(|_| !own.is_serial())?;
+        let serial = of_image.get(&own.without_schedule()).filter(|_| !own.settings.is_serial())?;
         let is_on_its_pieces = |other: &&usize| cells[**other].settings.decomposition == own.settings.decomposition;
         serial.iter().find(is_on_its_pieces).or(serial.first()).copied()
     };

@@ -11,17 +11,14 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// The rows of an experiment in one measurement, and their origin.
 pub(super) struct Side {
     /// The folder of the experiment, or the file of rows.
     path: PathBuf,
     pub(super) run: Option<RunFile>,
     pub(super) rows: Vec<Record>,
-    /// The instructions of cells, if they were counted.
     pub(super) instructions: BTreeMap<String, u64>,
 }
 
-/// The results of a comparison of two measurements, experiment by experiment.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Compared<T> {
     /// Name and comparison of each experiment that both have. The name is empty if two experiments were given, and not
@@ -38,27 +35,21 @@ impl<T> Compared<T> {
     }
 }
 
-/// A cell whose rows failed in the new measurement.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct FailedCell {
     pub cell: String,
-    /// Number of its rows that failed.
     pub failed: usize,
     pub rows: usize,
-    /// The error of the first of them.
     pub error: String,
 }
 
 /// The cells that the old measurement has and the new one lost.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct Lost {
-    /// The cells without rows.
     pub missing: Vec<String>,
-    /// The cells with rows that failed.
     pub failed: Vec<FailedCell>,
 }
 
-/// The rows of a cell, by their outcome.
 #[derive(Default)]
 struct Outcomes<'a> {
     sound: usize,
@@ -67,7 +58,6 @@ struct Outcomes<'a> {
     rows: usize,
 }
 
-/// The outcomes of each cell's rows.
 fn outcomes(rows: &[Record], is_sound: impl Fn(&Record) -> bool) -> BTreeMap<&str, Outcomes<'_>> {
     let mut cells: BTreeMap<&str, Outcomes<'_>> = BTreeMap::new();
     for row in rows {
@@ -105,7 +95,6 @@ impl Lost {
 }
 
 impl Side {
-    /// Reads a folder of one experiment, or a file of rows.
     fn read(path: &Path) -> Result<Self> {
         let (file, folder) =
             if path.is_dir() { (path.join(RECORDS), Some(path)) } else { (path.to_path_buf(), path.parent()) };
@@ -160,7 +149,6 @@ fn experiments_in(field: &str, path: &Path) -> Result<Option<BTreeMap<String, Pa
     Ok(Some(found))
 }
 
-/// The paths of both measurements of each experiment.
 fn paths(old: &Path, new: &Path) -> Result<Compared<[PathBuf; 2]>> {
     for (field, path) in [("old", old), ("new", new)] {
         match fs::metadata(path) {

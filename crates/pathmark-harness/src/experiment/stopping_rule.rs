@@ -9,8 +9,7 @@
 //! them. Decided cells are left out of later repetitions; serial runs are repeated beside the cells that are compared
 //! with them.
 
-use super::cell_diff::{Change, Judge, Pairing, Times, of_processes, turn};
-use super::diff::parse_share;
+use super::diff::{Change, Judge, Pairing, Times, of_processes, parse_share, turn};
 use super::ranking::MISS;
 use super::{Definition, Options};
 use crate::analysis::adjacent_pairs::{PairedRatio, by_process, paired_ratio};
@@ -29,7 +28,6 @@ const LEVEL: f64 = 0.95;
 /// The largest number of repetitions until a goal, if the user sets none.
 pub const MOST_REPETITIONS: u32 = 200;
 
-/// The goal of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Goal {
     /// The share that decides a cell: with two builds the limit of its ratio of times, with one build the precision of
@@ -43,21 +41,16 @@ pub enum Goal {
 }
 
 impl Goal {
-    /// Words for the goals other than a share.
     const WORDS: [(&'static str, Self); 2] = [("fastest", Self::Fastest), ("order", Self::Order)];
 
-    /// Whether it compares schedules with each other.
     pub(super) fn is_of_schedules(self) -> bool {
         Self::WORDS.iter().any(|(_, goal)| *goal == self)
     }
 }
 
-/// The rule by which repetitions stop.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StoppingRule {
-    /// The goal of a sweep.
     pub goal: Goal,
-    /// The goal as the user gave it.
     pub text: String,
     /// The time after which no repetition begins, from the start of the first one.
     pub max_time: Option<Duration>,
@@ -149,7 +142,6 @@ pub(super) struct Decisions {
 }
 
 impl Decisions {
-    /// Records a row of the old or of the new build.
     pub(super) fn note(&mut self, record: &Record, is_new: bool) {
         if let Some(seconds) = record.makespan_s.filter(|seconds| record.error.is_empty() && *seconds > 0.0) {
             let times = self.times.entry(record.cell.clone()).or_default();

@@ -1,8 +1,7 @@
 //! Sweeps: check an experiment, then run its cells and append their rows.
 
 use super::baseline::{Baseline, baseline_folder, check_program};
-use super::calibration_file::write_calibration;
-use super::cell::trace_file;
+use super::cell::{trace_file, with_serial_runs};
 use super::comparisons::Comparisons;
 use super::formula;
 use super::instructions;
@@ -16,14 +15,14 @@ use super::shuffle::shuffled;
 use super::stopping_rule::{MOST_REPETITIONS, StoppingRule};
 use super::time_limit::{Limits, TIMED_OUT};
 use super::{
-    Cell, CellJob, CellPoint, Definition, HalfFile, Keep, Options, PointJob, Progress, Reference, render_reference,
-    wanted_references,
+    Cell, CellJob, CellPoint, Definition, HalfFile, Keep, PointJob, Profile, Progress, Reference, SweepShard, Timeout,
+    render_reference, wanted_references,
 };
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
 use crate::film::Film;
-use crate::measure::{LeftOut, Record, Settings, TimingConcerns};
+use crate::measure::{LeftOut, Record, TimingConcerns, write_calibration};
 use crate::temporary;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -33,12 +32,34 @@ use std::time::Instant;
 const OWN_FILES: [&str; 6] =
     ["records.csv", "machine.toml", "experiment.toml", "calibration.csv", MESSAGES, instructions::INSTRUCTIONS];
 
-/// The outcome of a sweep.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// The options with which an experiment is run: those of the command line.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// The parent of the experiment's folder and of the references' folder.
+    pub out: PathBuf,
+    pub profile: Profile,
+    pub resume: bool,
+    /// Repetitions of each cell; `None` for the definition's number.
+    pub repetitions: Option<u32>,
+    /// Filters `field=value,value...`: a cell is run if it has one of the values of each filter.
+    pub filters: Vec<String>,
+    /// Another build of the program, which also runs each repetition of each cell.
+    pub baseline: Option<PathBuf>,
+    /// The part of the cells to run; `None` for all.
+    pub shard: Option<SweepShard>,
+    /// The figure that compares with serial runs. Filters then keep the serial runs, and there must be at least one.
+    pub serial_for: Option<&'static str>,
+    /// The goal at which repetitions stop; `None` for the definition's.
+    pub until: Option<StoppingRule>,
+    /// The time limit of each cell; `None` for the definition's.
+    pub timeout: Option<Timeout>,
+    pub count_instructions: bool,
+    pub command: String,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Summary {
-    /// The folder of the rows.
     pub folder: PathBuf,
-    /// Number of rows in the folder.
     pub rows: usize,
     /// Number of rows of the other build, if there is one.
     pub other_rows: usize,
@@ -50,7 +71,6 @@ pub struct Summary {
     pub invalid: u64,
     /// Rows that were not run, because the machine lacks what they need.
     pub left_out: LeftOut,
-    /// Rows whose times are in doubt.
     pub doubts: TimingConcerns,
 }
 
@@ -89,7 +109,7 @@ impl<'a> Sweep<'a> {
                 cell.at_most = None;
             }
         }
-        if let Some(figure) = options.serial_for.filter(|_| !cells.iter().any(Cell::is_serial)) {
+        if let Some(figure) = options.serial_for.filter(|_| !cells.iter().any(|cell| cell.settings.is_serial())) {
             let error = InputError::new("strategy", "", format!("the figure `{figure}` compares with serial runs"));
             return Err(definition.located(options.profile, error.allowed("serial beside the other strategies")));
         }
@@ -210,9 +230,6 @@ impl<'a> Sweep<'a> {
             }
         }
         progress.end();
-        if options.rerun_doubtful {
-            self.rerun(&mut running, repetitions, progress)?;
-        }
         if let Some(missed) = running.missed_goals() {
             progress.note(&missed);
         }
@@ -236,30 +253,6 @@ impl<'a> Sweep<'a> {
             None => self.definition.repetitions(self.options.profile),
         };
         self.options.repetitions.map_or_else(usual, Ok)
-    }
-
-    /// Runs cells with doubtful rows again, as often as each lacks rows without doubt, under new repetition numbers.
-    /// Doubtful rows stay, and rows that are doubtful again are not run a third time.
-    fn rerun(&self, running: &mut Running<'_>, wanted: u32, progress: &dyn Progress) -> Result<()> {
-        let doubtful = running.doubtful(wanted);
-        let first = running.next_repetition();
-        let blocks = doubtful.iter().map(|(_, lack)| *lack).max().unwrap_or(0);
-        let total = doubtful.iter().map(|(index, lack)| self.cells[*index].weight * u64::from(*lack)).sum();
-        let mut units = 0;
-        progress.begin(&format!("{}, doubtful cells again", self.definition.name), total);
-        for block in 0..blocks {
-            let open: HashSet<usize> =
-                doubtful.iter().filter(|(_, lack)| *lack > block).map(|(index, _)| *index).collect();
-            for index in shuffled(self.cells.len(), &self.definition.name, first + block) {
-                if open.contains(&index) {
-                    running.cell(index, first + block)?;
-                    units += self.cells[index].weight;
-                    progress.advance(units);
-                }
-            }
-        }
-        progress.end();
-        Ok(())
     }
 
     /// The job of a cell's process in a repetition; `order` is its position in the sweep.
@@ -309,11 +302,7 @@ fn filtered(cells: &[Cell], options: &Options) -> Result<Vec<Cell>> {
             return Err(InputError::new("filter", filter, "leaves no cell to run").into());
         }
     }
-    let ids: HashSet<&str> = wanted.iter().map(|cell| cell.id.as_str()).collect();
-    let compared = wanted.iter().filter(|_| options.serial_for.is_some());
-    let compared: HashSet<Settings> = compared.map(|cell| cell.without_schedule()).collect();
-    let is_baseline = |cell: &Cell| cell.is_serial() && compared.contains(&cell.without_schedule());
-    Ok(cells.iter().filter(|cell| ids.contains(cell.id.as_str()) || is_baseline(cell)).cloned().collect())
+    Ok(with_serial_runs(cells, &wanted, options.serial_for.is_some()))
 }
 
 /// Creates or reopens the file of rows; also returns the rows that it already has.
@@ -358,7 +347,6 @@ fn check_new(folder: &Path, rows: &Path) -> Result<()> {
     }
 }
 
-/// The two halves of each reference.
 fn references<'a>(
     definition: &Definition,
     wanted: &'a [Reference],

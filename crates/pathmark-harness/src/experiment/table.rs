@@ -31,7 +31,6 @@ pub(super) struct Table<const PROFILE: bool> {
     pub(super) reference_spp: Option<u32>,
     /// Pairs of a process, where cells are compared.
     pub(super) pairs: Option<u32>,
-    /// The time limit of a profile's cells.
     pub(super) timeout: Option<Timeout>,
 }
 
@@ -44,7 +43,6 @@ pub(super) type Scale = Table<true>;
 /// The axes that a matrix cannot leave out.
 pub(super) const REQUIRED: &[&str] = &["scene", "spp", "strategy", "threads", "decomposition"];
 
-/// The field of a profile for the time limit of its cells.
 const TIMEOUT: &str = "timeout";
 
 /// The field of a profile for the pairs of a process.
@@ -55,26 +53,22 @@ const SIZE: &str = "320x240";
 const REPETITIONS: u32 = 6;
 
 impl Matrix {
-    /// Whether the profile has this matrix.
     pub(super) fn is_for(&self, profile: Profile) -> bool {
         self.profiles.as_ref().is_none_or(|profiles| profiles.contains(&profile))
     }
 }
 
 impl Scale {
-    /// The default of a profile.
     pub(super) fn usual() -> Self {
         Self { axes: BTreeMap::from([("size", vec![SIZE.to_string()])]), repetitions: REPETITIONS, ..Self::default() }
     }
 }
 
 impl<const PROFILE: bool> Table<PROFILE> {
-    /// The values of an axis, if the table has it.
     pub(super) fn values(&self, axis: &str) -> Option<&Vec<String>> {
         self.axes.get(axis)
     }
 
-    /// The values of an axis of numbers, if the table has it.
     pub(super) fn numbers<T: FromStr>(&self, axis: &str) -> Option<Vec<T>> {
         Some(self.values(axis)?.iter().filter_map(|value| value.parse().ok()).collect())
     }
@@ -98,7 +92,6 @@ enum Repetitions {
     },
 }
 
-/// The name of an axis or of another field.
 struct Key<const PROFILE: bool>(String);
 
 impl<'de, const PROFILE: bool> Deserialize<'de> for Key<PROFILE> {
@@ -117,7 +110,6 @@ impl<'de, const PROFILE: bool> Deserialize<'de> for Key<PROFILE> {
     }
 }
 
-/// The values of an axis, read as its field's type.
 struct Values(&'static Setting);
 
 #[derive(Deserialize)]
@@ -207,7 +199,6 @@ impl<'de, const PROFILE: bool> Visitor<'de> for TableVisitor<PROFILE> {
     }
 }
 
-/// Reads one table, or an array of tables.
 pub(super) fn one_or_many<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
     struct OneOrMany<T>(PhantomData<T>);
     impl<'de, T: Deserialize<'de>> Visitor<'de> for OneOrMany<T> {

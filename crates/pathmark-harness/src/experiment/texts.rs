@@ -5,14 +5,11 @@ use std::fs;
 use std::path::Path;
 use std::sync::{LazyLock, OnceLock};
 
-/// Name and text of definitions.
 pub type Named = &'static [(&'static str, &'static str)];
 
-/// The texts that a program carries.
 #[derive(Debug, Clone, Copy)]
 pub struct Texts {
     pub experiments: Named,
-    /// The claims on the reports.
     pub claims: Named,
 }
 
@@ -43,14 +40,12 @@ fn read(folder: &Path, embedded: fn(&Texts) -> Named) -> Vec<(String, String)> {
     of_disk().unwrap_or_else(|| own().iter().map(|(name, text)| ((*name).to_string(), (*text).to_string())).collect())
 }
 
-/// Name and text of the committed experiments.
 pub fn experiments() -> &'static [(String, String)] {
     static EXPERIMENTS: LazyLock<Vec<(String, String)>> =
         LazyLock::new(|| read(Path::new(SOURCES), |texts| texts.experiments));
     &EXPERIMENTS
 }
 
-/// Name and text of the claims on each report.
 pub fn claims() -> &'static [(String, String)] {
     static CLAIMS: LazyLock<Vec<(String, String)>> =
         LazyLock::new(|| read(&Path::new(SOURCES).join("claims"), |texts| texts.claims));

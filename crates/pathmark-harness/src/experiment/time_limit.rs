@@ -23,7 +23,6 @@ pub const TIMED_OUT: &str = "timed-out";
 const LEAST: Duration = Duration::from_mins(1);
 /// The limit where there is no estimate: the cell is another program, or its pilot gave no time.
 const WITHOUT_ESTIMATE: Duration = Duration::from_hours(1);
-/// How often the estimate goes into the limit.
 const TIMES: f64 = 10.0;
 /// Seconds that hardly any scene's sample takes. Cells so small that they end in time even then need no estimate.
 const SLOWEST_SAMPLE_S: f64 = 1e-3;
@@ -34,11 +33,9 @@ const COUNTING: u32 = 50;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Timeout(Option<Duration>);
 
-/// The values of a time limit, for errors.
 const ALLOWED: &str = "a duration above 0 with its unit, such as 90s or 10min, or none";
 
 impl Timeout {
-    /// Parses the value of `--timeout`.
     pub fn parse(text: &str) -> Result<Self> {
         let refused = || InputError::new("timeout", text, "is not a time limit").allowed(ALLOWED).into();
         Self::of_text(text).ok_or_else(refused)
@@ -60,13 +57,11 @@ impl<'de> Deserialize<'de> for Timeout {
     }
 }
 
-/// The error of a row whose cell was ended at its limit.
 pub(super) fn timed_out(limit: Option<Duration>) -> String {
     let limit = limit.map(|limit| format!(" of {}", humantime::format_duration(limit))).unwrap_or_default();
     format!("{TIMED_OUT}: the cell was ended at its time limit{limit}; `timeout` or --timeout sets another")
 }
 
-/// The limits of a sweep's cells.
 pub(super) struct Limits<'a> {
     lab: &'a Lab,
     set: Option<Timeout>,
@@ -80,7 +75,6 @@ impl<'a> Limits<'a> {
         Ok(Self { lab: &sweep.definition.lab, set: sweep.options.timeout.or(own), kinds: Vec::new() })
     }
 
-    /// The limit of a cell; `None` for no limit.
     pub(super) fn limit(&mut self, cell: &Cell) -> Option<Duration> {
         match self.set {
             Some(Timeout(set)) => set,
@@ -88,7 +82,6 @@ impl<'a> Limits<'a> {
         }
     }
 
-    /// The limit of a cell whose instructions are counted.
     pub(super) fn limit_of_counting(&mut self, cell: &Cell) -> Option<Duration> {
         let threads = cell.settings.threads.min(available_threads()) as u32;
         self.limit(cell).map(|limit| limit.saturating_mul(COUNTING.saturating_mul(threads)))
@@ -125,20 +118,9 @@ impl<'a> Limits<'a> {
         let spp = self.lab.prepare(Settings { spp, ..kind.clone() }).ok()?.fewest_spp();
         let settings = Settings { spp, ..kind.clone() };
         let cell = Cell::new(&self.lab.prepare(settings.clone()).ok()?);
-        let job = CellJob {
-            experiment: String::new(),
-            points: vec![PointJob { cell: cell.id, spp, image: None }],
-            repetition: 0,
-            order: 0,
-            settings,
-            scene: cell.scene,
-            references: None,
-            object: None,
-            external: None,
-            trace: None,
-            stays: false,
-        };
-        let row = job.run_in_child(Some(LEAST)).into_iter().next()?;
+        let points = vec![PointJob { cell: cell.id, spp, image: None }];
+        let job = CellJob { points, settings, scene: cell.scene, ..CellJob::default() };
+        let row = job.run_in_child(None, Some(LEAST)).into_iter().next()?;
         let samples = f64::from(kind.spec.width) * f64::from(kind.spec.height) * f64::from(spp);
         row.makespan_s.map(|seconds| seconds / samples)
     }
@@ -156,7 +138,7 @@ mod tests {
     fn limits(text: &str, option: Option<Timeout>) -> Vec<Option<Duration>> {
         let definition = Definition::from_text(&Lab::built_in(), "x", "x.toml", text).unwrap();
         let folder = tempfile::tempdir().unwrap();
-        let options = Options { timeout: option, ..Options::usual(folder.path().to_path_buf()) };
+        let options = Options { out: folder.path().to_path_buf(), timeout: option, ..Options::default() };
         let sweep = Sweep::new(&definition, &options, &mut Files::default()).unwrap();
         let mut limits = Limits::of(&sweep).unwrap();
         limits.kinds.push((small(&sweep.cells[0].settings), Some(1e-2)));

@@ -4,10 +4,9 @@
 //! repetition in common, because each ran on its own, perhaps on another machine. Every part has the serial runs that its
 //! cells are compared with.
 
-use super::cell_diff::Times;
-use std::collections::{BTreeMap, HashMap};
+use super::diff::Times;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// A schedule's times, and its role.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Timed {
     pub(super) times: Times,
@@ -19,66 +18,41 @@ pub(super) struct Timed {
 
 pub(super) type Schedules = BTreeMap<String, Timed>;
 
-/// Sets of repetitions that are joined step by step (R. E. Tarjan, "Efficiency of a good but not linear set union
-/// algorithm", Journal of the ACM 22, 1975).
-#[derive(Default)]
-struct Joined {
-    parents: HashMap<u32, u32>,
-}
-
-impl Joined {
-    fn root(&mut self, repetition: u32) -> u32 {
-        let (mut root, mut below) = (repetition, Vec::new());
-        while let Some(parent) = self.parents.get(&root).filter(|parent| **parent != root) {
-            below.push(root);
-            root = *parent;
+/// Joins all sets of repetitions in which a schedule has times to one set.
+fn join(sets: &mut Vec<BTreeSet<u32>>, times: &Times) {
+    let mut joined: BTreeSet<u32> = times.keys().map(|(repetition, _)| *repetition).collect();
+    sets.retain(|set| {
+        let is_apart = set.is_disjoint(&joined);
+        if !is_apart {
+            joined.extend(set);
         }
-        self.parents.extend(below.into_iter().map(|own| (own, root)));
-        root
-    }
-
-    fn join(&mut self, times: &Times) {
-        let Some(first) = times.keys().next().map(|(first, _)| self.root(*first)) else { return };
-        for (repetition, _) in times.keys() {
-            let root = self.root(*repetition);
-            self.parents.insert(root, first);
-        }
-    }
-
-    fn has(&self, repetition: u32) -> bool {
-        self.parents.contains_key(&repetition)
-    }
+        is_apart
+    });
+    sets.push(joined);
 }
 
 /// Divides the schedules of an image into the parts that were measured together, in the order of their first
 /// repetitions. A serial schedule is in each part with which it shares a repetition; every other one is in one part.
 pub(super) fn parts(schedules: &Schedules) -> Vec<Schedules> {
-    let mut joined = Joined::default();
-    schedules.values().filter(|own| !own.is_serial).for_each(|own| joined.join(&own.times));
-    let is_alone = |own: &&Timed| own.is_serial && !own.times.keys().any(|(repetition, _)| joined.has(*repetition));
+    let mut sets = Vec::new();
+    schedules.values().filter(|own| !own.is_serial).for_each(|own| join(&mut sets, &own.times));
+    let is_in = |sets: &[BTreeSet<u32>], repetition: &u32| sets.iter().any(|set| set.contains(repetition));
+    let is_alone = |own: &&Timed| own.is_serial && !own.times.keys().any(|(repetition, _)| is_in(&sets, repetition));
     // Serial schedules that were measured with no other are compared with each other.
     let alone: Vec<&Timed> = schedules.values().filter(is_alone).collect();
     for own in alone {
-        joined.join(&own.times);
+        join(&mut sets, &own.times);
     }
-    let mut parts: BTreeMap<u32, Schedules> = BTreeMap::new();
-    let mut first = HashMap::new();
-    for (name, own) in schedules {
-        for (turn, seconds) in &own.times {
-            let (repetition, _) = turn;
-            if !joined.has(*repetition) {
-                continue;
-            }
-            let root = joined.root(*repetition);
-            let earliest = first.entry(root).or_insert(*repetition);
-            *earliest = (*earliest).min(*repetition);
-            let role = || Timed { times: Times::new(), ..own.clone() };
-            parts.entry(root).or_default().entry(name.clone()).or_insert_with(role).times.insert(*turn, *seconds);
-        }
-    }
-    let mut parts: Vec<(u32, Schedules)> = parts.into_iter().map(|(root, part)| (first[&root], part)).collect();
-    parts.sort_by_key(|(first, _)| *first);
-    parts.into_iter().map(|(_, part)| part).collect()
+    sets.sort_by_key(|set| set.first().copied());
+    let part = |set: &BTreeSet<u32>| {
+        let within = |(name, own): (&String, &Timed)| {
+            let mut own = own.clone();
+            own.times.retain(|(repetition, _), _| set.contains(repetition));
+            (!own.times.is_empty()).then(|| (name.clone(), own))
+        };
+        schedules.iter().filter_map(within).collect()
+    };
+    sets.iter().map(part).collect()
 }
 
 #[cfg(test)]

@@ -28,7 +28,6 @@ macro_rules! film_key {
         }
 
         impl FilmKey {
-            /// The key of a film with this image.
             pub fn of(image: ImageKey) -> Self {
                 Self { $($(#[$when])? $field: Asked::of(image.$field),)* revision: kernel::REVISION }
             }
@@ -43,7 +42,6 @@ fn double() -> String {
     Precision::F64.name().to_string()
 }
 
-/// Writes the film, whole or not at all.
 pub fn write_film(path: &Path, key: &FilmKey, film: &Film) -> Result<()> {
     FILE.write(path, key, &[film])
 }

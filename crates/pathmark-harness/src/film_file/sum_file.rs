@@ -23,11 +23,9 @@ const CHECKPOINT: &[u8] = b"pathmark checkpoint";
 /// In bytes; a header holds only names and numbers.
 const LONGEST_HEADER: usize = 1 << 16;
 
-/// A kind of file.
 pub struct SumFile {
     /// Its first line, without the newline: a name and the layout's version.
     pub magic: &'static str,
-    /// The field's name in errors.
     pub field: &'static str,
 }
 
@@ -100,7 +98,6 @@ impl SumFile {
         Err(self.broken(path, "does not contain as many pixels as its header states"))
     }
 
-    /// Opens a file and reads the line of its header.
     fn begin(&self, path: &Path) -> Result<(Body, Vec<u8>)> {
         let data = fs::metadata(path).map_err(|e| match e.kind() {
             ErrorKind::NotFound | ErrorKind::NotADirectory => self.broken(path, "there is no such file"),
@@ -177,7 +174,6 @@ impl Body {
         Ok(Film::from_pixels(width, height, pixels))
     }
 
-    /// Reads over the rest of the file, and returns whether its checksum holds.
     fn ends_whole(mut self) -> io::Result<bool> {
         let mut chunk = [0; 4096];
         loop {

@@ -5,19 +5,11 @@ use std::io::Cursor;
 use image::codecs::bmp::{BmpDecoder, BmpEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 
-use super::codec::{self, Decoded};
-use super::{Format, Image, tone_map};
+use super::codec;
+use super::{Decoded, Format, Image, Note, tone_map};
 use crate::error::{InputError, Result};
 
-pub(super) const FORMAT: Format = Format {
-    name: "bmp",
-    about: "display values, 8 bits, uncompressed",
-    linear: false,
-    forbidden_width: None,
-    decode,
-    encode: |image, _| encode(image),
-    notes: |_| Vec::new(),
-};
+pub(super) const FORMAT: Format = Format::new("bmp", "display values, 8 bits, uncompressed", false, decode, encode);
 
 fn decode(bytes: &[u8]) -> Decoded<Image> {
     // The file length in the header reveals both a cut and appended bytes.
@@ -29,7 +21,7 @@ fn decode(bytes: &[u8]) -> Decoded<Image> {
     codec::from_display(codec::decode(decoder, bytes.len())?, tone_map::linear)
 }
 
-fn encode(image: &Image) -> Result<Vec<u8>> {
+fn encode(image: &Image, _: &[Note]) -> Result<Vec<u8>> {
     let pixels = tone_map::quantise_image(image)?;
     let mut bytes = Vec::new();
     BmpEncoder::new(&mut bytes)

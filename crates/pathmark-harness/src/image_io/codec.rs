@@ -4,41 +4,15 @@
 //! A header of 30 bytes can claim 2^32 x 2^32 pixels. A claim is therefore checked against fixed limits and the file's
 //! length before memory is allocated. No format here packs more than `MAX_PIXELS_PER_BYTE` pixels into a byte.
 
-#[cfg(feature = "pictures")]
 use image::{DynamicImage, ImageDecoder, Limits};
 
-use super::{Image, tone_map};
-use crate::error::Result;
+use super::{Decoded, Image, MAX_SIDE, check_size};
 
-/// A decoded value, or the problem of a file's bytes; the caller adds the file's name.
-pub(super) type Decoded<T> = std::result::Result<T, String>;
-
-/// The longest side, in pixels.
-const MAX_SIDE: u64 = 1 << 16;
-/// The most pixels: 6 GiB in memory.
-const MAX_PIXELS: u64 = 1 << 28;
-#[cfg(feature = "pictures")]
 /// Deflate expands a byte to at most 1032 bytes, each of which holds 8 pixels of one bit.
 const MAX_PIXELS_PER_BYTE: u64 = 8 * 1032;
-/// The longest file, in bytes: more than the largest picture takes in the least compact format (text with 16 bits per
-/// channel).
-pub(super) const MAX_FILE_LENGTH: u64 = 20 * MAX_PIXELS;
-#[cfg(feature = "pictures")]
 /// Most bytes that a decoder may allocate for data other than pixels.
 pub(super) const MAX_METADATA: u64 = 64 << 20;
 
-/// Checks that Pathmark reads and writes pictures of this size.
-pub(super) fn check_size(width: u64, height: u64) -> Decoded<()> {
-    if width == 0 || height == 0 {
-        Err(format!("a picture of {width} x {height} pixels is empty"))
-    } else if width > MAX_SIDE || height > MAX_SIDE || width * height > MAX_PIXELS {
-        Err(format!("{width} x {height} pixels are more than {MAX_SIDE} per side or {MAX_PIXELS} in all"))
-    } else {
-        Ok(())
-    }
-}
-
-#[cfg(feature = "pictures")]
 /// Like [`check_size`], and also checks that a file of `length` bytes can hold that many pixels.
 pub(super) fn check_claim(width: u64, height: u64, length: usize) -> Decoded<()> {
     check_size(width, height)?;
@@ -48,8 +22,6 @@ pub(super) fn check_claim(width: u64, height: u64, length: usize) -> Decoded<()>
     Ok(())
 }
 
-#[cfg(feature = "pictures")]
-/// Returns the limits for a decoder of the `image` crate.
 pub(super) fn limits() -> Limits {
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE as u32);
@@ -58,7 +30,6 @@ pub(super) fn limits() -> Limits {
     limits
 }
 
-#[cfg(feature = "pictures")]
 /// Reads the pixels from a decoder that has read its header, of a file of `length` bytes.
 pub(super) fn decode(decoder: impl ImageDecoder, length: usize) -> Decoded<DynamicImage> {
     let (width, height) = decoder.dimensions();
@@ -66,7 +37,6 @@ pub(super) fn decode(decoder: impl ImageDecoder, length: usize) -> Decoded<Dynam
     DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())
 }
 
-#[cfg(feature = "pictures")]
 /// Converts display values to a picture in linear radiance. `linear` converts a value from 0 to 1.
 pub(super) fn from_display(image: DynamicImage, linear: impl Fn(f64) -> f64) -> Decoded<Image> {
     // The background of a transparent pixel is not in the file.
@@ -86,20 +56,8 @@ pub(super) fn from_display(image: DynamicImage, linear: impl Fn(f64) -> f64) -> 
     Ok(Image { width, height, pixels })
 }
 
-#[cfg(feature = "pictures")]
-/// Converts linear values to a picture, without a change.
 pub(super) fn from_linear(image: DynamicImage) -> Image {
     let (width, height) = (image.width(), image.height());
     let values = image.into_rgb32f();
     Image { width, height, pixels: values.pixels().map(|pixel| pixel.0.map(f64::from)).collect() }
-}
-
-/// Converts all channel values to f32, the precision of the linear formats. NaN and infinity remain, so that a picture
-/// can show where they are; a finite value that only f64 can hold is refused.
-pub(super) fn to_f32(image: &Image) -> Result<Vec<f32>> {
-    let too_large = |value: &f64| value.is_finite() && (*value as f32).is_infinite();
-    match image.pixels.iter().position(|pixel| pixel.iter().any(too_large)) {
-        Some(index) => Err(tone_map::bad_pixel(image, index, "is too large for f32")),
-        None => Ok(image.pixels.iter().flatten().map(|&value| value as f32).collect()),
-    }
 }

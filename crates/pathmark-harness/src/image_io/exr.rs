@@ -9,18 +9,13 @@ use std::io::Cursor;
 use exr::prelude::{SpecificChannels, Text, Vec2, WritableImage};
 use image::codecs::openexr::OpenExrDecoder;
 
-use super::codec::{self, Decoded};
-use super::{Format, Image, Note};
+use super::codec;
+use super::{Decoded, Format, Image, Note, to_f32};
 use crate::error::{InputError, Result};
 
 pub(super) const FORMAT: Format = Format {
-    name: "exr",
-    about: "linear radiance in f32, compressed, lossless, with notes",
-    linear: true,
-    forbidden_width: None,
-    decode,
-    encode,
     notes,
+    ..Format::new("exr", "linear radiance in f32, compressed, lossless, with notes", true, decode, encode)
 };
 
 /// Bits of the version field for unsupported content: deep data, several parts.
@@ -71,7 +66,6 @@ fn check_header(bytes: &[u8]) -> Option<Decoded<()>> {
     Some(Ok(()))
 }
 
-/// Takes the next `N` bytes.
 fn take<'a, const N: usize>(rest: &mut &'a [u8]) -> Option<&'a [u8; N]> {
     let (head, tail) = rest.split_first_chunk()?;
     *rest = tail;
@@ -87,7 +81,7 @@ fn text<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
 }
 
 fn encode(image: &Image, notes: &[Note]) -> Result<Vec<u8>> {
-    let samples = codec::to_f32(image)?;
+    let samples = to_f32(image)?;
     let (pixels, _) = samples.as_chunks::<3>();
     let size = Vec2(image.width as usize, image.height as usize);
     let channels = SpecificChannels::rgb(|at: Vec2<usize>| {
@@ -107,7 +101,6 @@ fn encode(image: &Image, notes: &[Note]) -> Result<Vec<u8>> {
     Ok(bytes.into_inner())
 }
 
-/// Returns the notes from the comment; empty if the header cannot be read or another program wrote the comment.
 fn notes(bytes: &[u8]) -> Vec<(String, String)> {
     if !matches!(check_header(bytes), Some(Ok(()))) {
         return Vec::new();

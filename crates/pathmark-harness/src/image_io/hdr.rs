@@ -9,19 +9,14 @@ use std::io::Cursor;
 use image::codecs::hdr::{HdrDecoder, HdrEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 
-use super::codec::{self, Decoded};
+use super::codec;
 use super::tone_map::bad_pixel;
-use super::{Format, Image};
+use super::{Decoded, Format, Image, Note};
 use crate::error::{InputError, Result};
 
 pub(super) const FORMAT: Format = Format {
-    name: "hdr",
-    about: "linear radiance, 8 bits per channel with a shared exponent",
-    linear: true,
     forbidden_width: Some(UNREADABLE_WIDTH),
-    decode,
-    encode: |image, _| encode(image),
-    notes: |_| Vec::new(),
+    ..Format::new("hdr", "linear radiance, 8 bits per channel with a shared exponent", true, decode, encode)
 };
 
 /// Values of at least this size do not fit: the exponent byte ends at 2^127.
@@ -59,7 +54,7 @@ fn decode(bytes: &[u8]) -> Decoded<Image> {
     Ok(image)
 }
 
-fn encode(image: &Image) -> Result<Vec<u8>> {
+fn encode(image: &Image, _: &[Note]) -> Result<Vec<u8>> {
     let mut samples = Vec::with_capacity(image.pixels.len() * 12);
     for (index, &pixel) in image.pixels.iter().enumerate() {
         if !pixel.iter().all(|value| (0.0..TOO_LARGE).contains(value)) {

@@ -5,19 +5,11 @@
 //! The header ends with one byte of white space, so the length of the file is known exactly, and any other length is
 //! refused.
 
-use super::codec::{self, Decoded};
-use super::{Format, Image};
+use super::{Decoded, Format, Image, Note, check_size, to_f32};
 use crate::error::Result;
 
-pub(super) const FORMAT: Format = Format {
-    name: "pfm",
-    about: "linear radiance in f32, uncompressed, lossless",
-    linear: true,
-    forbidden_width: None,
-    decode,
-    encode: |image, _| encode(image),
-    notes: |_| Vec::new(),
-};
+pub(super) const FORMAT: Format =
+    Format::new("pfm", "linear radiance in f32, uncompressed, lossless", true, decode, encode);
 
 fn decode(bytes: &[u8]) -> Decoded<Image> {
     let mut rest = bytes;
@@ -33,7 +25,7 @@ fn decode(bytes: &[u8]) -> Decoded<Image> {
     if !scale.is_finite() || scale == 0.0 {
         return Err(format!("the scale {text} must be finite and not 0"));
     }
-    codec::check_size(u64::from(width), u64::from(height))?;
+    check_size(u64::from(width), u64::from(height))?;
     let (width_in_values, rows) = (width as usize * channels, height as usize);
     let expected = width_in_values * rows * size_of::<f32>();
     if rest.len() != expected {
@@ -65,10 +57,10 @@ fn side(rest: &mut &[u8]) -> Decoded<u32> {
     text.parse().map_err(|_| format!("the size {text} is not a whole number"))
 }
 
-fn encode(image: &Image) -> Result<Vec<u8>> {
+fn encode(image: &Image, _: &[Note]) -> Result<Vec<u8>> {
     let mut bytes = format!("PF\n{} {}\n-1.0\n", image.width, image.height).into_bytes();
     bytes.reserve_exact(image.pixels.len() * 3 * size_of::<f32>());
-    for row in codec::to_f32(image)?.chunks_exact(3 * image.width as usize).rev() {
+    for row in to_f32(image)?.chunks_exact(3 * image.width as usize).rev() {
         bytes.extend(row.iter().flat_map(|value| value.to_le_bytes()));
     }
     Ok(bytes)

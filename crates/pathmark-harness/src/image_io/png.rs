@@ -8,19 +8,12 @@ use std::io::Cursor;
 
 use image::codecs::png::PngDecoder;
 
-use super::codec::{self, Decoded};
-use super::{Format, Image, Note, tone_map};
+use super::codec;
+use super::{Decoded, Format, Image, Note, tone_map};
 use crate::error::{InputError, Result};
 
-pub(super) const FORMAT: Format = Format {
-    name: "png",
-    about: "display values, 8 bits, compressed, with notes",
-    linear: false,
-    forbidden_width: None,
-    decode,
-    encode,
-    notes,
-};
+pub(super) const FORMAT: Format =
+    Format { notes, ..Format::new("png", "display values, 8 bits, compressed, with notes", false, decode, encode) };
 
 /// The chunk that ends a PNG: length 0, its name, its checksum.
 const END: [u8; 12] = *b"\0\0\0\0IEND\xAE\x42\x60\x82";
@@ -36,7 +29,6 @@ fn decode(bytes: &[u8]) -> Decoded<Image> {
     codec::from_display(codec::decode(decoder, bytes.len())?, linear)
 }
 
-/// The scale of numbers in chunks.
 const SCALE: f64 = 1e5;
 /// The gamma of a display of gamma 2.2, as a chunk can store it.
 const USUAL: u32 = 45455;
@@ -45,10 +37,8 @@ const PRIMARIES: [[f64; 2]; 4] = [[0.3127, 0.3290], [0.64, 0.33], [0.30, 0.60], 
 /// The difference of coordinates that does not matter.
 const SAME_PRIMARY: f64 = 0.002;
 
-/// The conversion from a display value to a linear one.
 type Curve = Box<dyn Fn(f64) -> f64>;
 
-/// Returns the conversion that the chunks before the pixels ask for.
 fn curve(bytes: &[u8]) -> Decoded<Curve> {
     let srgb: Decoded<Curve> = Ok(Box::new(tone_map::srgb_linear));
     let reader = header(bytes).map_err(|e| e.to_string())?;
@@ -84,7 +74,6 @@ fn curve(bytes: &[u8]) -> Decoded<Curve> {
     })
 }
 
-/// Reads the chunks before the pixels.
 fn header(bytes: &[u8]) -> std::result::Result<png::Reader<Cursor<&[u8]>>, png::DecodingError> {
     let limits = png::Limits { bytes: codec::MAX_METADATA as usize };
     png::Decoder::new_with_limits(Cursor::new(bytes), limits).read_info()

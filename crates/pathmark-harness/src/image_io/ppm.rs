@@ -6,19 +6,11 @@ use std::io::Cursor;
 use image::codecs::pnm::{PnmDecoder, PnmEncoder, PnmSubtype, SampleEncoding};
 use image::{ExtendedColorType, ImageEncoder};
 
-use super::codec::{self, Decoded};
-use super::{Format, Image, tone_map};
+use super::codec;
+use super::{Decoded, Format, Image, Note, tone_map};
 use crate::error::{InputError, Result};
 
-pub(super) const FORMAT: Format = Format {
-    name: "ppm",
-    about: "display values, 8 bits, uncompressed",
-    linear: false,
-    forbidden_width: None,
-    decode,
-    encode: |image, _| encode(image),
-    notes: |_| Vec::new(),
-};
+pub(super) const FORMAT: Format = Format::new("ppm", "display values, 8 bits, uncompressed", false, decode, encode);
 
 fn decode(bytes: &[u8]) -> Decoded<Image> {
     let mut source = Cursor::new(bytes);
@@ -36,7 +28,7 @@ fn decode(bytes: &[u8]) -> Decoded<Image> {
     codec::from_display(image, tone_map::linear)
 }
 
-fn encode(image: &Image) -> Result<Vec<u8>> {
+fn encode(image: &Image, _: &[Note]) -> Result<Vec<u8>> {
     let pixels = tone_map::quantise_image(image)?;
     let mut bytes = Vec::new();
     PnmEncoder::new(&mut bytes)

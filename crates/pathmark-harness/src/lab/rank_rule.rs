@@ -50,7 +50,6 @@ pub fn is_small(chunk: usize, jobs: usize, ranks: usize) -> bool {
     chunk as f64 <= SMALL * jobs as f64 / ranks as f64
 }
 
-/// The master that hands out chunks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Master {
     /// Rank 0, which renders nothing.
@@ -59,7 +58,6 @@ pub enum Master {
     Working,
 }
 
-/// How ranks get their jobs.
 #[derive(Debug, Clone, Copy)]
 pub enum Distribution {
     /// Each rank knows its jobs beforehand.
@@ -86,12 +84,10 @@ impl fmt::Display for RankRule {
 }
 
 impl RankRule {
-    /// Returns the way in which ranks get their jobs under this rule.
     pub fn distribution(&self) -> Distribution {
         self.distribution
     }
 
-    /// Returns an error if `ranks` ranks cannot follow this rule.
     pub fn check(&self, ranks: usize) -> Result<()> {
         match self.distribution {
             Distribution::Master(Master::Only, _) if ranks < 2 => {

@@ -1,9 +1,8 @@
 //! Adaptive sampling, more samples for noisier pixels: `render --adaptive`, and `adaptive = [false, true]` in an
 //! experiment.
 //!
-//! A pilot renders a few samples per pixel with a seed that no image can have, estimates the noise of each cell of a
-//! fixed grid, and is discarded. The image's samples decide nothing, so its mean is as unbiased as with the same number
-//! everywhere. Adaptive renderers that reuse their pilot's samples are biased (Kirk and Arvo, "Unbiased Sampling
+//! A pilot renders a few samples per pixel with a seed that no image can have, estimates the noise of each cell of a fixed
+//! grid, and is discarded: renderers that reuse their pilot's samples are biased (Kirk and Arvo, "Unbiased Sampling
 //! Techniques for Image Synthesis", 1991). The numbers of samples follow from scene and settings alone, so the checksum
 //! does not depend on the schedule.
 
@@ -27,7 +26,6 @@ const EVEN_PART: u32 = 8;
 const PILOT_PART: u32 = 16;
 
 impl Setup {
-    /// Refuses settings that ask for adaptive samples and cannot have them.
     pub(super) fn check_adaptive(&self) -> Result<()> {
         let Settings { adaptive, spp, rank_rule, .. } = self.settings();
         if !*adaptive {
@@ -55,8 +53,8 @@ impl Setup {
         let before = Instant::now();
         let grid = self.sample_grid()?;
         let pilot_s = before.elapsed().as_secs_f64();
-        self.check_size(grid.plan_size(self.decomposition()))?;
-        let plan = grid.plan(self.decomposition());
+        self.check_size(grid.plan_size(&self.decomposition))?;
+        let plan = grid.plan(&self.decomposition);
         let mut totals = RunTotals::new();
         let spec = &self.settings().spec;
         let films = totals.round(self, plan, from_ref(&(0..grid.largest())), watch)?;

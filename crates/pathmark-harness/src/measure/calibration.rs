@@ -10,6 +10,7 @@
 use super::available_threads;
 use super::usage::Usage;
 use crate::analysis::quantile::median;
+use crate::csv_file;
 use crate::error::{Error, Result};
 use crate::lab::Lab;
 use crate::strategy::{Config, Spawner, SystemThreads, Workers};
@@ -17,6 +18,7 @@ use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 use std::io;
 use std::num::NonZeroUsize;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread::JoinHandle;
@@ -31,17 +33,13 @@ const JOBS: [usize; 2] = [200, 20_000];
 /// The same if each job is a thread.
 const JOBS_WITH_THREADS: [usize; 2] = [16, 112];
 
-/// Median time of a run of empty jobs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CalibrationRow {
-    /// Strategy, with its parameter if it has one.
     pub strategy: String,
     /// Requested threads; 1 where that has no meaning.
     pub threads: usize,
-    /// Number of empty jobs.
     pub jobs: usize,
-    /// Seconds of the run.
     pub seconds: f64,
     /// CPU seconds that this process used meanwhile, on all processors; empty if the system does not report them.
     pub cpu_s: Option<f64>,
@@ -49,7 +47,6 @@ pub struct CalibrationRow {
     pub started: usize,
 }
 
-/// The system's threads, counted.
 #[derive(Default)]
 pub(super) struct Counted(AtomicUsize);
 
@@ -65,13 +62,6 @@ impl Spawner for Counted {
         self.0.fetch_add(1, Ordering::Relaxed);
         SystemThreads.spawn(name, body)
     }
-}
-
-/// One run of empty jobs.
-struct Run {
-    seconds: f64,
-    cpu_s: Option<f64>,
-    started: usize,
 }
 
 /// Times empty jobs under each of these strategies, given as in [`super::Settings::strategy`].
@@ -102,11 +92,10 @@ pub fn calibrate(lab: &Lab, strategies: &[String]) -> Result<Vec<CalibrationRow>
             break;
         }
         for (row, times) in rows.iter_mut().zip(&mut times) {
-            let run = run_empty_jobs(lab, row)?;
-            row.started = run.started;
+            *row = run_empty_jobs(lab, row)?;
             if round > 0 {
-                times.0.push(run.seconds);
-                times.1.extend(run.cpu_s);
+                times.0.push(row.seconds);
+                times.1.extend(row.cpu_s);
             }
         }
     }
@@ -117,13 +106,23 @@ pub fn calibrate(lab: &Lab, strategies: &[String]) -> Result<Vec<CalibrationRow>
     Ok(rows)
 }
 
+/// Times all strategies of the table and writes the rows: `calibration.csv`, beside those of a sweep.
+pub fn write_calibration(lab: &Lab, path: &Path) -> Result<()> {
+    let strategies: Vec<String> = lab.strategies().iter().map(|entry| entry.name.to_string()).collect();
+    csv_file::write(path, calibrate(lab, &strategies)?)
+}
+
+pub fn read_calibration(path: &Path) -> Result<Vec<CalibrationRow>> {
+    csv_file::read(path)
+}
+
 /// 1, 2, 4 and so on below `most`, and `most`.
 fn thread_counts(most: usize) -> Vec<usize> {
     let doubled = std::iter::successors(Some(1), |threads| Some(2 * threads)).take_while(|threads| *threads < most);
     doubled.chain([most]).collect()
 }
 
-fn run_empty_jobs(lab: &Lab, row: &CalibrationRow) -> Result<Run> {
+fn run_empty_jobs(lab: &Lab, row: &CalibrationRow) -> Result<CalibrationRow> {
     let (entry, parameter) = lab.strategy_named(&row.strategy)?;
     let failed = |error| Error::system("calibrating strategy", entry.name, std::io::Error::other(error));
     let threads = NonZeroUsize::new(row.threads).unwrap_or(NonZeroUsize::MIN);
@@ -137,7 +136,8 @@ fn run_empty_jobs(lab: &Lab, row: &CalibrationRow) -> Result<Run> {
     let seconds = start.elapsed().as_secs_f64();
     let used = usage.zip(Usage::now()).map(|(before, after)| after.since(&before));
     let started = spawner.number() - before;
-    Ok(Run { seconds, cpu_s: used.map(|used| used.user_s + used.system_s), started })
+    let cpu_s = used.map(|used| used.user_s + used.system_s);
+    Ok(CalibrationRow { seconds, cpu_s, started, ..row.clone() })
 }
 
 #[cfg(test)]

@@ -16,7 +16,6 @@ use std::path::{Path, PathBuf};
 
 const FILE: SumFile = SumFile { magic: "pathmark checkpoint 2", field: "checkpoint" };
 
-/// The part of an image that a checkpoint holds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Part {
@@ -25,17 +24,14 @@ pub(super) struct Part {
     pub(super) spp: u32,
 }
 
-/// The header of a checkpoint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Header {
     /// The key of the film, with the number of its samples.
     pub(super) film: FilmKey,
-    /// The part of the image, if it is not the whole.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) part: Option<Part>,
     pub(super) kernel: String,
-    /// Seconds of rendering so far.
     rendering_s: f64,
     /// The target accuracy, and the samples at the next look.
     target_error: Option<f64>,
@@ -44,7 +40,6 @@ pub(super) struct Header {
 }
 
 impl Header {
-    /// The samples that each of its pixels has.
     pub(super) fn samples(&self) -> Range<u32> {
         let FilmKey { width, height, spp, .. } = self.film;
         let start = match self.part {
@@ -59,7 +54,6 @@ impl Header {
         start..spp
     }
 
-    /// Width, height and number of the images after the header.
     fn shape(&self) -> (u32, u32, usize) {
         (self.film.width, self.film.height, sections(&self.samples()).len())
     }
@@ -69,7 +63,6 @@ impl Header {
         FILE.header(path, Self::shape)
     }
 
-    /// Reads a file, and the subtrees of its film.
     pub(super) fn read(path: &Path) -> Result<(Self, ProgressiveFilm)> {
         let (header, films): (Self, Vec<Film>) = FILE.read(path, Self::shape)?;
         let parts = sections(&header.samples()).into_iter().zip(films).collect();
@@ -85,19 +78,15 @@ fn refused(path: &Path, problem: &str) -> InputError {
     InputError::new(FILE.field, path.display().to_string(), problem)
 }
 
-/// A file for the checkpoints of one render.
 pub struct Checkpoint {
     path: PathBuf,
     _lock: Lock,
     target_error: Option<f64>,
 }
 
-/// The state that an earlier process saved.
 pub struct Saved {
     pub film: ProgressiveFilm,
-    /// Its progress.
     pub position: Position,
-    /// The counts of the film's paths.
     pub history: History,
 }
 
@@ -120,7 +109,6 @@ impl Checkpoint {
         let mine = Header {
             film: FilmKey { spp: found.film.spp, ..setup.film_key() },
             part: part_of(rounds),
-            kernel: setup.settings().spec.kernel.clone(),
             ..found.clone()
         };
         if let Some(difference) = difference(&found, &mine) {
@@ -134,7 +122,6 @@ impl Checkpoint {
         Ok((checkpoint, Some(Saved { film, position: Position { rendering_s, look }, history })))
     }
 
-    /// Writes it, whole or not at all.
     pub fn save(&self, rounds: &Rounds, position: Position) -> Result<()> {
         let header = Header {
             film: rounds.film_key(),

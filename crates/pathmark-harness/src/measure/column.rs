@@ -2,7 +2,6 @@
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Column {
-    /// Its heading.
     pub name: &'static str,
     /// Its description, with the unit.
     pub about: &'static str,
@@ -12,7 +11,6 @@ pub struct Column {
     pub since: u32,
 }
 
-/// Columns that had another name up to version 10.
 const RENAMED: &[(&str, &str)] = &[
     ("gap_sum_s", "idle_between_jobs_s"),
     ("tail_sum_s", "idle_tail_s"),
@@ -34,7 +32,6 @@ impl Column {
         Self { name, about, kind, since }
     }
 
-    /// The kind of its values, in words.
     pub fn values(&self) -> &'static str {
         let kind = self.kind;
         if kind.contains("f64") {
@@ -99,7 +96,6 @@ macro_rules! columns {
             }
         }
 
-        /// The columns of a row, in their order.
         pub const COLUMNS: &[Column] = &[
             $(Column::new(stringify!($f), concat!($($f_about),+), stringify!($f_kind), 1),)*
             $($(#[$i_when])?

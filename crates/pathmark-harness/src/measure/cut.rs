@@ -2,7 +2,8 @@
 
 use super::Setup;
 use crate::error::{InputError, Result};
-use crate::film::{Decomposition, PixelSum, Plan, PlanSize};
+use crate::film::{Bounds, Decomposition, Piece, PixelSum, Plan, PlanSize, TileBuffer};
+use crate::kernel::Kernel;
 use crate::settings::{LARGEST_BYTES, LARGEST_THREADS};
 use crate::strategy::{Entry, Workers};
 use std::ops::Range;
@@ -10,7 +11,6 @@ use std::ops::Range;
 /// Bytes of a job besides its pixels: its piece, its place in the ledger and in the output, its span and its counts,
 /// some of them several times. Measured: 336 for pieces of one pixel and 360 for pieces of 16 pixels.
 const JOB_BYTES: u64 = 384;
-/// Bytes of a pixel in the buffer of a job.
 const PIXEL_BYTES: u64 = size_of::<PixelSum>() as u64;
 
 /// Cuts a film into pieces: section by section of its samples.
@@ -56,11 +56,31 @@ impl Setup {
     /// The pieces of other samples than those of the settings: of each section in turn.
     pub(super) fn plan_of(&self, sections: &[Range<u32>]) -> Result<Plan> {
         let spec = &self.settings().spec;
-        cut(self.decomposition(), self.strategy(), [spec.width, spec.height], sections)
+        cut(&self.decomposition, self.strategy(), [spec.width, spec.height], sections)
     }
 
     /// Refuses a plan of pieces that are cut further, if it would be too large.
     pub(super) fn check_size(&self, size: PlanSize) -> Result<()> {
-        check(size, self.decomposition(), self.strategy())
+        check(size, &self.decomposition, self.strategy())
     }
+}
+
+/// One in this many rows of a piece is rendered.
+const STRIDE: u32 = 4;
+
+/// The rays that each piece will take, estimated from one sample in every pixel of every fourth row. Rays instead of
+/// seconds keep the order the same in each run.
+pub(super) fn costs(plan: &Plan, kernel: &dyn Kernel) -> Vec<f64> {
+    plan.pieces().iter().map(|piece| cost(piece, kernel)).collect()
+}
+
+fn cost(piece: &Piece, kernel: &dyn Kernel) -> f64 {
+    let (bounds, samples) = (piece.bounds, &piece.samples);
+    let (mut rays, mut rows) = (0, 0);
+    for y in (bounds.y0..bounds.y1).step_by(STRIDE as usize) {
+        let row = Piece { bounds: Bounds { y0: y, y1: y + 1, ..bounds }, samples: samples.start..samples.start + 1 };
+        rays += kernel.render(&row, &mut TileBuffer::new(row.bounds)).rays;
+        rows += 1;
+    }
+    rays as f64 * f64::from(bounds.height()) * samples.len() as f64 / f64::from(rows)
 }

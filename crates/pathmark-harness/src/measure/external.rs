@@ -1,7 +1,7 @@
 //! External programs: run by their command, timed from outside, with the image read from the file that they write.
 
 use super::Settings;
-use super::record::{Measured, Record, external_row};
+use super::record::{Record, external_row};
 use crate::error::{Error, InputError, Result};
 use crate::image_io::{self, Image};
 use crate::scene::Scene;
@@ -11,16 +11,13 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-/// The result of an external program.
 pub struct ExternalRun {
     pub image: Image,
     /// Seconds from its start to its end, start-up and writing included.
     pub wall_s: f64,
-    /// CPU seconds in the program and in the system.
     pub cpu_s: Option<[f64; 2]>,
 }
 
-/// CPU seconds of all children so far.
 fn children_s() -> Option<[f64; 2]> {
     let counted = getrusage(UsageWho::RUSAGE_CHILDREN).ok()?;
     Some([counted.user_time(), counted.system_time()].map(|time| time.num_microseconds() as f64 * 1e-6))
@@ -71,21 +68,21 @@ pub fn run_external(name: &str, command: &[String], out: &Path) -> Result<Option
 
 impl ExternalRun {
     /// Its row: the measurements, for settings whose estimator is the program's name.
-    pub fn record(&self, settings: &Settings, scene: &Scene, errors: Measured) -> Record {
+    pub fn record(&self, settings: &Settings, scene: &Scene) -> Record {
         Record {
             makespan_s: Some(self.wall_s),
             cpu_user_s: self.cpu_s.map(|cpu| cpu[0]),
             cpu_system_s: self.cpu_s.map(|cpu| cpu[1]),
             mean_radiance: Some(self.image.mean().iter().sum::<f64>() / 3.0),
             samples: Some(u64::from(settings.spec.width) * u64::from(settings.spec.height) * u64::from(settings.spp)),
-            ..external_row(settings, scene, errors)
+            ..external_row(settings, scene)
         }
     }
 }
 
 /// The row of a missing program: no failure, but without measurements.
 pub fn missing_external(settings: &Settings, scene: &Scene) -> Record {
-    let mut record = external_row(settings, scene, Measured::default());
+    let mut record = external_row(settings, scene);
     record.warn(&super::Warning::NoProgram);
     record
 }

@@ -1,12 +1,8 @@
-//! Goals of a render: a number of samples, an accuracy, or a time limit.
+//! Goals of a render: a number of samples, an accuracy, or a time limit. docs/errors.md says when a look at the accuracy
+//! stops a render ([`CONFIDENCE`], [`crate::film::Noise`]).
 //!
-//! A look checks the accuracy: at 16 samples per pixel and then at most at every doubling. The last step is planned
-//! from the noise of at least half of its samples, so that it ends a little below the target instead of between the
-//! target and its half. A look stops the render if the squared error is below the target with [`CONFIDENCE`], by its
-//! estimate and the scatter of the image's own error around it ([`crate::film::Noise`]). Two facts prevent a stop by
-//! luck. The looks are few, and their estimates share most of their samples. Heavy tails, if they make a sample
-//! variance too small by luck, make the image's error small by the same luck. No look can see light that no sample has
-//! found yet.
+//! Two facts prevent a stop by luck. The looks are few, and their estimates share most of their samples. Heavy tails, if
+//! they make a sample variance too small by luck, make the image's error small by the same luck.
 //!
 //! Looks follow from the film alone, so a render that was stopped in between ends in the same way. Between looks, a
 //! time limit or a checkpoint may divide the samples into steps.
@@ -26,33 +22,27 @@ const LEAST_GAIN: f64 = 0.02;
 /// When to stop: at the first of these that is reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
-    /// Samples per pixel, if their number is requested.
     pub spp: Option<u32>,
     /// RMSE in linear radiance.
     pub target_error: Option<f64>,
-    /// Seconds of rendering.
     pub time_limit_s: Option<f64>,
     /// Seconds of rendering after which a round should end, so that the caller gets control.
     pub pause_s: Option<f64>,
 }
 
-/// The progress of a render, for the caller between two rounds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Position {
     /// Seconds of rendering, those of earlier processes included.
     pub rendering_s: f64,
-    /// Samples at the next look.
     pub look: u32,
 }
 
 /// A function that renders up to so many samples per pixel: [`Rounds::extend_to`], or several processes.
 pub type Extend<'a> = &'a mut dyn FnMut(&mut Rounds, u32) -> Result<RoundTimes>;
 
-/// A function that is called after each round.
 pub type Between<'a> = &'a mut dyn FnMut(&Rounds, Position) -> Result<()>;
 
 impl Goal {
-    /// Refuses goals that are unreachable or meaningless.
     pub fn check(&self, rounds: &Rounds) -> Result<()> {
         let is_positive = |value: f64| value.is_finite() && value > 0.0;
         for (field, value) in [("target-error", self.target_error), ("time-limit", self.time_limit_s)] {

@@ -1,9 +1,12 @@
-//! Counts of a film's paths, over all rounds and all processes that rendered it.
+//! Counts of a film's paths, over all rounds and all processes that rendered it, and the places of its invalid samples.
+//!
+//! Kernels only count invalid samples. A sample can be rendered again from its address, so the few that are reported are
+//! searched for afterwards, and a run without any pays nothing.
 
-use super::invalid::{InvalidSample, TOLD};
-use crate::film::SAMPLE_BLOCK;
-use crate::kernel::Counts;
+use crate::film::{Piece, Plan, SAMPLE_BLOCK};
+use crate::kernel::{Counts, Kernel, one_sample};
 use serde::{Deserialize, Serialize};
+use std::fmt;
 use std::ops::Range;
 
 /// The counts of a film's samples, each sample once. A checkpoint keeps them, so a continued film has the counts of all
@@ -11,7 +14,6 @@ use std::ops::Range;
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct History {
-    /// Counts of the finished samples.
     whole: Counts,
     /// Counts of the unfinished block at the end, which the next round renders again.
     open: Counts,
@@ -20,7 +22,6 @@ pub struct History {
 }
 
 impl History {
-    /// The counts of all samples.
     pub(super) fn counts(&self) -> Counts {
         let mut counts = self.whole;
         counts.add(&self.open);
@@ -38,7 +39,6 @@ impl History {
         if is_open { &mut self.open } else { &mut self.whole }.add(counts);
     }
 
-    /// Whether to search for more invalid samples.
     pub(super) fn tells_few(&self) -> bool {
         self.invalid.len() < TOLD
     }
@@ -51,4 +51,47 @@ impl History {
             }
         }
     }
+}
+
+/// A sample that was NaN, infinite or negative, with its address: `pathmark inspect path --pixel X,Y --sample K` renders it
+/// again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct InvalidSample {
+    pub y: u32,
+    pub x: u32,
+    pub sample: u32,
+}
+
+impl fmt::Display for InvalidSample {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}/{}", self.x, self.y, self.sample)
+    }
+}
+
+const TOLD: usize = 10;
+
+/// The first invalid samples of the pieces, by row, column and number, whatever the decomposition. `counts` has the
+/// counts of each piece.
+pub(super) fn first_invalid(kernel: &dyn Kernel, plan: &Plan, counts: &[Counts]) -> Vec<InvalidSample> {
+    let affected: Vec<&Piece> =
+        plan.pieces().iter().zip(counts).filter(|(_, counts)| counts.invalid > 0).map(|(piece, _)| piece).collect();
+    let first = affected.iter().map(|piece| piece.bounds.y0).min().unwrap_or(0);
+    let last = affected.iter().map(|piece| piece.bounds.y1).max().unwrap_or(0);
+    let mut found = Vec::new();
+    for y in first..last {
+        let mut in_row: Vec<InvalidSample> = Vec::new();
+        for piece in affected.iter().filter(|piece| (piece.bounds.y0..piece.bounds.y1).contains(&y)) {
+            for x in piece.bounds.x0..piece.bounds.x1 {
+                let samples = piece.samples.clone().map(|sample| InvalidSample { y, x, sample });
+                in_row.extend(samples.filter(|at| one_sample(kernel, [at.x, at.y], at.sample).1.invalid > 0));
+            }
+        }
+        in_row.sort_unstable();
+        found.extend(in_row);
+        if found.len() >= TOLD {
+            found.truncate(TOLD);
+            break;
+        }
+    }
+    found
 }

@@ -20,7 +20,6 @@ const BATCH_S: f64 = 0.25;
 /// The pieces that have been claimed; without a device, all belong to the workers.
 pub(super) struct PieceClaims {
     taken: Vec<AtomicBool>,
-    /// Number of pieces that are not claimed.
     left: AtomicUsize,
 }
 
@@ -62,7 +61,6 @@ impl Kernel for Rendered {
     }
 }
 
-/// Data that the devices and the workers share.
 pub(super) struct Shared<'a> {
     pub(super) plan: &'a Plan,
     pub(super) claims: &'a PieceClaims,
@@ -71,7 +69,6 @@ pub(super) struct Shared<'a> {
 }
 
 impl Shared<'_> {
-    /// Runs `work` while each device renders pieces, served by a separate thread.
     pub(super) fn beside(
         &self,
         devices: Vec<&dyn Kernel>,

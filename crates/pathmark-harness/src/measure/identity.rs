@@ -14,24 +14,23 @@ fn distance(value: f64) -> String {
 /// The specification with the values that the choice really uses.
 fn used(spec: Spec, choice: &RenderOptions) -> Spec {
     Spec {
-        estimator: choice.estimator().name.to_string(),
+        estimator: choice.estimator.name.to_string(),
         max_depth: choice.depth(),
         camera_rays: Some(choice.camera_rays()).filter(|rays| *rays > 1),
         roulette: choice.roulette().map(|rule| rule.to_string()),
-        clamp: choice.clamp().map(|clamp| clamp.to_string()),
-        filter: choice.filter().map(Filter::name).map(str::to_string),
-        epsilon: choice.epsilon().map(distance),
-        precision: choice.precision().name().to_string(),
-        kernel: choice.kernel().to_string(),
-        simd: Some(choice.simd().to_string()),
+        clamp: choice.clamp.map(|clamp| clamp.to_string()),
+        filter: choice.filter.map(Filter::name).map(str::to_string),
+        epsilon: choice.epsilon.map(distance),
+        precision: choice.plan.precision().name().to_string(),
+        kernel: choice.plan.name().to_string(),
+        simd: Some(choice.plan.simd().to_string()),
         effects: Some(choice.effects().to_string()),
-        accelerator: Some(choice.accelerator().to_string()),
+        accelerator: Some(choice.accelerator.name.to_string()),
         ..spec
     }
 }
 
 impl Setup {
-    /// The settings that it really uses, not the requested ones.
     fn used(&self) -> Settings {
         let settings = self.settings().clone();
         let spec = match self.scene() {
@@ -41,18 +40,16 @@ impl Setup {
         Settings { scene: self.name().to_string(), threads: self.threads(), spec, ..settings }
     }
 
-    /// The identity of its image.
     pub fn image_key(&self) -> ImageKey {
         ImageKey { scene_hash: self.hash(), ..ImageKey::of(&self.used()) }
     }
 
     /// The identity of its schedule among those of the same image.
     pub fn schedule_key(&self) -> ScheduleKey {
-        let fallback = self.scene().map(|(_, choice)| choice.fallback().to_string());
+        let fallback = self.scene().map(|(_, choice)| choice.fallback.to_string());
         ScheduleKey { kernel_fallback: fallback.unwrap_or_default(), ..ScheduleKey::of(&self.used()) }
     }
 
-    /// The key of the film that it will render.
     pub fn film_key(&self) -> FilmKey {
         FilmKey::of(self.image_key())
     }

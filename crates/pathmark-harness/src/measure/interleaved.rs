@@ -9,12 +9,9 @@ const ROUND: Duration = Duration::from_millis(2);
 /// Doublings after which an operation counts as too quick to be timed.
 const MOST_DOUBLINGS: u32 = 40;
 
-/// Nanoseconds per operation of either, and the ratio of the first to the second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interleaved {
-    /// Median nanoseconds per operation of the first.
     pub first_ns: f64,
-    /// Median nanoseconds per operation of the second.
     pub second_ns: f64,
     /// First over second: median over the rounds, with a distribution-free interval.
     pub ratio: Estimate,
@@ -50,7 +47,6 @@ pub fn interleaved(
     })
 }
 
-/// Returns how many operations a round needs.
 fn operations(mut time: impl FnMut(u64) -> Duration) -> u64 {
     let counts = (0..MOST_DOUBLINGS).map(|power| 1_u64 << power);
     counts.into_iter().find(|count| time(*count) >= ROUND).unwrap_or(1 << MOST_DOUBLINGS)

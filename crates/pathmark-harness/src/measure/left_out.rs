@@ -18,7 +18,6 @@ impl Record {
         })
     }
 
-    /// Whether it was not run because the machine lacks what it needs.
     pub fn is_left_out(&self) -> bool {
         self.lacks().is_some()
     }
@@ -31,28 +30,24 @@ pub struct LeftOut {
 }
 
 impl LeftOut {
-    /// Those of some rows.
     pub fn of<'a>(rows: impl IntoIterator<Item = &'a Record>) -> Self {
         let mut left_out = Self::default();
         rows.into_iter().for_each(|row| left_out.add(row));
         left_out
     }
 
-    /// Counts the row if it was left out.
     pub fn add(&mut self, row: &Record) {
         if let Some(reason) = row.lacks() {
             *self.by_reason.entry(reason).or_default() += 1;
         }
     }
 
-    /// Counts those of another sweep.
     pub fn merge(&mut self, other: &Self) {
         for (reason, count) in &other.by_reason {
             *self.by_reason.entry(reason.clone()).or_default() += count;
         }
     }
 
-    /// Number of rows.
     pub fn count(&self) -> usize {
         self.by_reason.values().sum()
     }
@@ -64,7 +59,6 @@ impl LeftOut {
     }
 }
 
-/// One line with all reasons.
 impl fmt::Display for LeftOut {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "left out: {}", self.lines().collect::<Vec<_>>().join("; "))

@@ -1,15 +1,14 @@
 //! The machine and the build of a measurement: seconds mean nothing without them.
 
-use super::processor::{instruction_sets, model_numbers};
-use super::stamp::Stamp;
+use super::provenance::Stamp;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::fs;
 use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
 
 /// Facts about the machine and the build. Unknown text is `unknown`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Machine {
-    /// Name of the processor.
     pub cpu: String,
     /// The maker's numbers of the processor, such as family, model and stepping: one name may stand for many models.
     /// Rows of older versions do not have them.
@@ -18,29 +17,19 @@ pub struct Machine {
     /// Instruction sets of the processor. Rows of older versions do not have them.
     #[serde(default)]
     pub cpu_features: String,
-    /// Processors that this process may use.
     pub processors: usize,
     /// Physical cores; 0 if the system does not report them.
     pub physical_cores: usize,
-    /// Frequency governor.
     pub governor: String,
-    /// Main memory.
     pub memory_bytes: u64,
-    /// Operating system and kernel.
     pub system: String,
     /// Load averages over 1, 5 and 15 minutes when the sweep began: other programs' work disturbs timings.
     pub load_average: String,
-    /// Compiler.
     pub rustc: String,
-    /// Target triple.
     pub target: String,
-    /// Extra compiler flags.
     pub rustflags: String,
-    /// Build profile.
     pub profile: String,
-    /// Version control revision of the sources.
     pub commit: String,
-    /// Whether the sources had uncommitted changes.
     pub dirty: bool,
 }
 
@@ -66,12 +55,6 @@ fn differing(own: impl Into<Facts>, other: impl Into<Facts>) -> Option<(&'static
 
 const KERNEL: &str = if cfg!(target_os = "linux") { "Linux" } else { std::env::consts::OS };
 
-/// Load averages over 1, 5 and 15 minutes.
-fn load_average() -> String {
-    let load = System::load_average().ok();
-    or_unknown(load.map(|load| format!("{:.2} {:.2} {:.2}", load.one, load.five, load.fifteen)))
-}
-
 impl Machine {
     /// The machine in a few words, for figures.
     pub fn line(&self) -> String {
@@ -79,7 +62,6 @@ impl Machine {
         format!("{} processors, {}{model}", self.processors, self.cpu)
     }
 
-    /// Inspects this machine and this build.
     pub fn look() -> Self {
         let asked = RefreshKind::nothing()
             .with_cpu(CpuRefreshKind::nothing())
@@ -87,6 +69,8 @@ impl Machine {
         let system = System::new_with_specifics(asked).ok();
         let name = system.as_ref().and_then(|system| Some(system.cpus().first()?.brand().trim().to_string()));
         let kernel = System::kernel_version().ok().map(|version| format!("{KERNEL} {version}"));
+        let load = System::load_average().ok();
+        let load = load.map(|load| format!("{:.2} {:.2} {:.2}", load.one, load.five, load.fifteen));
         Self {
             cpu: or_unknown(name),
             cpu_model: model_numbers(&read("/proc/cpuinfo").unwrap_or_default()),
@@ -96,7 +80,7 @@ impl Machine {
             governor: or_unknown(read("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor")),
             memory_bytes: system.as_ref().map_or(0, System::total_memory),
             system: or_unknown(kernel),
-            load_average: load_average(),
+            load_average: or_unknown(load),
             rustc: built_with(env!("PATHMARK_RUSTC")),
             target: built_with(env!("PATHMARK_TARGET")),
             rustflags: built_with(env!("PATHMARK_RUSTFLAGS")),
@@ -142,6 +126,51 @@ impl Machine {
     }
 }
 
+/// The makers' numbers of the processors in the text of /proc/cpuinfo: vendor, family, model and stepping on x86, and
+/// implementer, part, variant and revision on ARM. A machine with cores of several kinds has several, separated by
+/// commas. Empty if the text has none of them.
+fn model_numbers(cpuinfo: &str) -> String {
+    let kinds: BTreeSet<String> = cpuinfo.split("\n\n").filter_map(one).collect();
+    kinds.into_iter().collect::<Vec<_>>().join(", ")
+}
+
+fn one(paragraph: &str) -> Option<String> {
+    let value = |key: &str| {
+        let lines = paragraph.lines().filter_map(|line| line.split_once(':'));
+        lines.into_iter().find(|(name, _)| name.trim() == key).map(|(_, value)| value.trim())
+    };
+    let fields = |head: &str, pairs: &[(&str, &str)]| {
+        let numbers = pairs.iter().filter_map(|(name, key)| Some(format!(" {name} {}", value(key)?)));
+        format!("{head}{}", numbers.collect::<String>())
+    };
+    if let Some(vendor) = value("vendor_id") {
+        return Some(fields(vendor, &[("family", "cpu family"), ("model", "model"), ("stepping", "stepping")]));
+    }
+    let implementer = value("CPU implementer")?;
+    let numbers = [("part", "CPU part"), ("variant", "CPU variant"), ("revision", "CPU revision")];
+    Some(fields(&format!("implementer {implementer}"), &numbers))
+}
+
+/// The instruction sets of this processor that compilers choose between. Flags of the kernel are not among them: an
+/// update of the kernel changes those.
+fn instruction_sets() -> String {
+    macro_rules! detected {
+        ($detect:ident: $($name:tt)*) => {
+            [$(($name, std::arch::$detect!($name))),*]
+        };
+    }
+    #[cfg(target_arch = "x86_64")]
+    let sets = detected!(is_x86_feature_detected:
+        "sse3" "ssse3" "sse4.1" "sse4.2" "popcnt" "avx" "avx2" "bmi1" "bmi2" "fma" "f16c" "sha" "vaes" "gfni"
+        "avx512f" "avx512bw" "avx512cd" "avx512dq" "avx512vl" "avx512ifma" "avx512vnni" "avx512bf16" "avx512fp16");
+    #[cfg(target_arch = "aarch64")]
+    let sets = detected!(is_aarch64_feature_detected:
+        "neon" "fp16" "dotprod" "lse" "rcpc" "crc" "aes" "sha2" "sha3" "i8mm" "bf16" "sve" "sve2");
+    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    let sets: [(&str, bool); 0] = [];
+    sets.iter().filter(|(_, is_there)| *is_there).map(|(name, _)| *name).collect::<Vec<_>>().join(" ")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -175,5 +204,42 @@ mod tests {
         assert_eq!((old.cpu_model.as_str(), old.cpu_features.as_str()), ("", ""));
         // A fact that an old file lacks is no difference.
         assert_eq!((old.difference(&Machine::look()), Machine::look().difference(&old)), (None, None));
+    }
+
+    fn x86(family: u32) -> String {
+        format!(
+            "processor\t: 0\nvendor_id\t: AuthenticAMD\ncpu family\t: {family}\nmodel\t\t: 2\nmodel name\t: AMD EPYC\n\
+             stepping\t: 1\n\nprocessor\t: 1\nvendor_id\t: AuthenticAMD\ncpu family\t: {family}\nmodel\t\t: 2\n\
+             model name\t: AMD EPYC\nstepping\t: 1\n"
+        )
+    }
+
+    fn arm(part: &str) -> String {
+        format!(
+            "processor\t: 0\nBogoMIPS\t: 50.00\nFeatures\t: fp asimd\nCPU implementer\t: 0x41\nCPU architecture: 8\n\
+             CPU variant\t: 0x3\nCPU part\t: {part}\nCPU revision\t: 1\n"
+        )
+    }
+
+    #[test]
+    fn families_of_one_name_are_different_processors() {
+        assert_eq!(model_numbers(&x86(26)), "AuthenticAMD family 26 model 2 stepping 1");
+        assert_ne!(model_numbers(&x86(25)), model_numbers(&x86(26)));
+    }
+
+    #[test]
+    fn arm_processors_have_numbers_instead_of_a_name() {
+        assert_eq!(model_numbers(&arm("0xd0c")), "implementer 0x41 part 0xd0c variant 0x3 revision 1");
+        let both = format!("{}\n{}", arm("0xd05"), arm("0xd0b"));
+        assert_eq!(
+            model_numbers(&both),
+            "implementer 0x41 part 0xd05 variant 0x3 revision 1, implementer 0x41 part 0xd0b variant 0x3 revision 1"
+        );
+    }
+
+    #[test]
+    fn a_text_without_numbers_gives_none() {
+        assert_eq!(model_numbers(""), "");
+        assert_eq!(model_numbers("processor\t: 0\nfeatures\t: vx\n"), "");
     }
 }

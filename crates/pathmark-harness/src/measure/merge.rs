@@ -10,24 +10,18 @@ use crate::film::{Film, ProgressiveFilm, Shard, ShardCut};
 use crate::film_file::FilmKey;
 use std::path::{Path, PathBuf};
 
-/// Maximum number of missing parts that are named.
 const MOST_TOLD: usize = 20;
 
-/// An image made of parts.
 pub struct Merged {
-    /// The key of the whole image.
     pub key: FilmKey,
-    /// The sums of all parts that were found.
     pub film: Film,
     /// Number of the image's samples that were NaN, infinite or negative.
     pub invalid: u64,
-    /// Number of parts of the image.
     pub count: u32,
     /// The parts that are missing or not finished, in words; none if the film is the whole image.
     pub missing: Vec<String>,
 }
 
-/// A part's file.
 struct Found {
     path: PathBuf,
     header: Header,
@@ -45,13 +39,12 @@ impl Found {
         Ok(Self { path: path.to_path_buf(), header, part })
     }
 
-    /// The header fields that all parts of one image share: kernel and progress may differ.
+    /// The header of the whole image: all parts of one image share what [`difference`] compares.
     fn whole(&self) -> Header {
         let Part { shard, spp } = self.part;
         let shard = Shard::new(1, shard.count(), shard.cut()).unwrap_or(shard);
         let mut header = self.header.clone();
         (header.film.spp, header.part) = (spp, Some(Part { shard, spp }));
-        header.kernel.clear();
         header
     }
 
@@ -116,7 +109,6 @@ pub fn merge(paths: &[PathBuf], partial: bool) -> Result<Merged> {
     Ok(Merged { key, film, invalid, count, missing })
 }
 
-/// The parts that were not found or are not finished, in words.
 fn missing(parts: &[Found], count: u32) -> Vec<String> {
     let mut missing = Vec::new();
     let mut found = parts.iter().peekable();

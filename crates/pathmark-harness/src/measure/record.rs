@@ -1,7 +1,7 @@
 //! One row of `records.csv`: one repetition of one cell, with everything that is needed to repeat it.
 
 use super::column::columns;
-use super::stamp::Stamp;
+use super::provenance::Stamp;
 use super::{Column, ImageKey, Outcome, ScheduleKey, Setting, Settings, Setup, Warning, utc_now};
 use crate::analysis::quantile::median;
 use crate::error::Result;
@@ -181,34 +181,6 @@ const TOLERANCE: f64 = 0.05;
 /// See [`Record::fireflies`].
 const WHITE: f64 = 1.0;
 
-/// The errors of an image, if there was a reference.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Measured {
-    /// See [`Record::mse`].
-    pub mse: Option<f64>,
-    /// See [`Record::mse_display`].
-    pub mse_display: Option<f64>,
-    /// See [`Record::rel_mse`].
-    pub rel_mse: Option<f64>,
-    /// See [`Record::within_tolerance`].
-    pub within_tolerance: Option<f64>,
-    /// See [`Record::fireflies`].
-    pub fireflies: Option<u64>,
-}
-
-impl Measured {
-    /// The errors of an image against two half-references, which share no samples with it or each other.
-    pub fn against(image: &Image, first: &Image, second: &Image) -> Result<Self> {
-        Ok(Self {
-            mse: Some(metric::cross_mse(image, first, second)?),
-            mse_display: Some(metric::cross_mse_display(image, first, second)?),
-            rel_mse: Some(metric::cross_rel_mse(image, first, second)?),
-            within_tolerance: Some(metric::share_within(image, first, second, TOLERANCE)?),
-            fireflies: Some(metric::brighter_pixels(image, first, second, WHITE)?),
-        })
-    }
-}
-
 /// The row of an image and a schedule, without measurements.
 fn described(image: ImageKey, schedule: ScheduleKey) -> Record {
     Record {
@@ -232,33 +204,37 @@ pub fn failure(settings: &Settings, error: &str) -> Record {
     Record { error: error.replace('\n', "; "), ..asked(settings) }
 }
 
-/// The row of another program, with its errors.
-pub(super) fn external_row(settings: &Settings, scene: &Scene, errors: Measured) -> Record {
-    Record { scene: scene.name.clone(), scene_hash: scene.hash.clone(), ..asked(settings).with_errors(errors) }
+/// The row of another program.
+pub(super) fn external_row(settings: &Settings, scene: &Scene) -> Record {
+    Record { scene: scene.name.clone(), scene_hash: scene.hash.clone(), ..asked(settings) }
 }
 
 impl Record {
-    /// The row with the errors of its image.
-    #[must_use]
-    pub fn with_errors(mut self, errors: Measured) -> Self {
-        self.mse = errors.mse;
-        self.rmse = errors.mse.and_then(metric::root);
-        self.mse_display = errors.mse_display;
-        self.rmse_display = errors.mse_display.and_then(metric::root);
-        self.rel_mse = errors.rel_mse;
-        self.within_tolerance = errors.within_tolerance;
-        self.fireflies = errors.fireflies;
-        self
+    /// The row with the errors of its image against two half-references, which share no samples with it or each other.
+    pub fn with_errors(mut self, image: &Image, [first, second]: &[Image; 2]) -> Result<Self> {
+        let mse = metric::cross_mse(image, first, second)?;
+        let mse_display = metric::cross_mse_display(image, first, second)?;
+        (self.mse, self.rmse) = (Some(mse), metric::root(mse));
+        (self.mse_display, self.rmse_display) = (Some(mse_display), metric::root(mse_display));
+        self.rel_mse = Some(metric::cross_rel_mse(image, first, second)?);
+        self.within_tolerance = Some(metric::share_within(image, first, second, TOLERANCE)?);
+        self.fireflies = Some(metric::brighter_pixels(image, first, second, WHITE)?);
+        Ok(self)
     }
 
-    /// The errors of its image.
-    pub fn errors(&self) -> Measured {
-        Measured {
-            mse: self.mse,
-            mse_display: self.mse_display,
-            rel_mse: self.rel_mse,
-            within_tolerance: self.within_tolerance,
-            fireflies: self.fireflies,
+    /// The row with the errors of another row of the same image.
+    #[must_use]
+    pub fn with_errors_of(self, other: &Self) -> Self {
+        Self {
+            mse: other.mse,
+            rmse: other.rmse,
+            mse_display: other.mse_display,
+            rmse_display: other.rmse_display,
+            rel_mse: other.rel_mse,
+            within_tolerance: other.within_tolerance,
+            fireflies: other.fireflies,
+            object_mse: other.object_mse,
+            ..self
         }
     }
 
@@ -296,10 +272,10 @@ impl Record {
     }
 
     /// The row of a finished run.
-    pub fn new(setup: &Setup, outcome: &Outcome, errors: Measured) -> Self {
+    pub fn new(setup: &Setup, outcome: &Outcome) -> Self {
         let durations = outcome.trace.durations_s();
         let balance = outcome.trace.balance(outcome.makespan_s, outcome.workers_used as usize);
-        let (counts, mut record) = (&outcome.counts, Self::of(setup).with_errors(errors));
+        let (counts, mut record) = (&outcome.counts, Self::of(setup));
         record.spp = outcome.spp;
         record.rounds = Some(outcome.rounds);
         record.estimated_rmse = outcome.film.noise().map(|noise| noise.mse.sqrt());

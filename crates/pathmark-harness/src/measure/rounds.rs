@@ -12,7 +12,6 @@ use crate::film_file::FilmKey;
 use crate::settings::check_spp;
 use std::ops::Range;
 
-/// A render that can continue.
 pub struct Rounds {
     setup: Setup,
     shard: Option<Shard>,
@@ -89,17 +88,14 @@ impl Rounds {
         Ok(self.totals.last)
     }
 
-    /// The setup of the render.
     pub fn setup(&self) -> &Setup {
         &self.setup
     }
 
-    /// The part of the image, if it is not the whole.
     pub fn shard(&self) -> Option<Shard> {
         self.shard
     }
 
-    /// Number of pixels that are rendered.
     pub fn pixels(&self) -> u64 {
         let spec = &self.setup.settings().spec;
         let all = u64::from(spec.width) * u64::from(spec.height);
@@ -111,7 +107,6 @@ impl Rounds {
         self.film.spp()
     }
 
-    /// The sums of all samples so far.
     pub fn film(&self) -> Film {
         self.film.film()
     }
@@ -121,22 +116,18 @@ impl Rounds {
         &self.film
     }
 
-    /// The counts of the film's paths.
     pub fn history(&self) -> &History {
         &self.totals.history
     }
 
-    /// The key of the film so far.
     pub fn film_key(&self) -> FilmKey {
         FilmKey { spp: self.spp(), ..self.setup.film_key() }
     }
 
-    /// Returns the setup, when there are no more rounds.
     pub fn into_setup(self) -> Setup {
         self.setup
     }
 
-    /// The outcome of all rounds.
     pub fn outcome(&self) -> Outcome {
         self.totals.outcome(&self.setup, self.spp(), self.film())
     }

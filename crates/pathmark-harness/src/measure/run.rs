@@ -1,13 +1,11 @@
 //! A run: jobs handed to a strategy, once or in several rounds, timed and verified.
 
-use super::foreign_load::FOREIGN_SHARE;
-use super::history::History;
+use super::history::{History, InvalidSample, first_invalid};
 use super::hybrid::{PieceClaims, Shared};
-use super::invalid::{InvalidSample, first_invalid};
 use super::ledger::Ledger;
 use super::output::{Delivery, Output};
 use super::provenance::Provenance;
-use super::usage::Usage;
+use super::usage::{FOREIGN_SHARE, Usage};
 use super::{JobSpan, Setup, Trace, Warning, available_threads, utc_now};
 use crate::error::{Error, Result};
 use crate::film::{Film, Plan, Reserve, Sections};
@@ -30,13 +28,10 @@ const FOREIGN_LEAST_S: f64 = 0.03;
 /// A function that another thread calls now and then with the number of jobs done.
 pub type Watch<'a> = Option<&'a (dyn Fn(u64) + Sync)>;
 
-/// The result of a run.
 pub struct Outcome {
-    /// The image's sums.
     pub film: Film,
     /// Samples per pixel; their mean if the run was adaptive.
     pub spp: u32,
-    /// Number of rounds in which jobs were handed out.
     pub rounds: u32,
     /// The pieces, in the order in which they were handed out.
     pub plan: Arc<Plan>,
@@ -55,26 +50,21 @@ pub struct Outcome {
     pub device: Option<DeviceCosts>,
     /// Seconds to estimate the costs of the pieces, if their order depends on them.
     pub pilot_s: f64,
-    /// Seconds to make the strategy.
     pub setup_s: f64,
     /// Seconds from handing over the jobs until all were done, over all rounds.
     pub makespan_s: f64,
-    /// Seconds to merge the pieces.
     pub merge_s: f64,
     /// The film's checksum; none if the sampler draws other random numbers in each run.
     pub checksum: Option<String>,
-    /// Doubts about the run.
     pub warnings: Vec<Warning>,
     /// The kernel's remarks on how it rendered.
     pub remarks: Vec<String>,
     /// When it started; empty if the system's clock shows no date from 1970 to 9999.
     pub started_utc: String,
-    /// Resource usage during the makespan.
     pub(super) cpu: Option<Usage>,
 }
 
 impl Outcome {
-    /// The provenance of a picture of the film.
     pub fn provenance(&self, setup: &Setup) -> Provenance {
         let key = FilmKey { spp: self.spp, ..setup.film_key() };
         Provenance { key, checksum: self.checksum.clone() }
@@ -106,7 +96,7 @@ impl Setup {
         }
         let (spec, spp) = (&self.settings().spec, self.settings().spp);
         let mut totals = RunTotals::new();
-        let films = totals.round(self, self.plan(), from_ref(&(0..spp)), watch)?;
+        let films = totals.round(self, self.plan.clone(), from_ref(&(0..spp)), watch)?;
         let film = films.into_iter().next().unwrap_or_else(|| Film::new(spec.width, spec.height));
         Ok(totals.outcome(self, spp, film))
     }
@@ -116,7 +106,6 @@ impl Setup {
 pub struct RoundTimes {
     /// Seconds from handing over the jobs until all were done.
     pub makespan_s: f64,
-    /// Seconds to merge the pieces.
     pub merge_s: f64,
     /// CPU seconds during the makespan, in the program and in the system.
     pub cpu_s: Option<f64>,
@@ -125,6 +114,7 @@ pub struct RoundTimes {
 }
 
 /// The totals of all rounds of a run so far. The strategy is made for the first round and kept.
+#[derive(Default)]
 pub(super) struct RunTotals {
     strategy: Option<Box<dyn Strategy>>,
     rounds: u32,
@@ -149,25 +139,7 @@ pub(super) struct RunTotals {
 
 impl RunTotals {
     pub(super) fn new() -> Self {
-        Self {
-            strategy: None,
-            rounds: 0,
-            plan: Plan::default(),
-            spans: Vec::new(),
-            job_counts: Vec::new(),
-            history: History::default(),
-            workers_used: 0,
-            asked: 0,
-            build_s: 0.0,
-            pilot_s: 0.0,
-            setup_s: 0.0,
-            makespan_s: 0.0,
-            merge_s: 0.0,
-            cpu: None,
-            started_utc: utc_now(),
-            last: RoundTimes::default(),
-            reserve: Cell::default(),
-        }
+        Self { started_utc: utc_now(), ..Self::default() }
     }
 
     /// Renders the plan, each of whose pieces lies in one of the sections, and returns a film for each section.
@@ -189,10 +161,10 @@ impl RunTotals {
         self.build_s = build_s;
         let before_pilot = Instant::now();
         let plan = Arc::new(setup.ordered(plan, &*kernel));
-        if setup.is_by_cost() {
+        if setup.decomposition.is_by_cost() {
             self.pilot_s += before_pilot.elapsed().as_secs_f64();
         }
-        let output = setup.new_output(Delivery {
+        let output = (setup.output.new)(Delivery {
             plan: Arc::clone(&plan),
             films,
             threads: setup.settings().threads.min(available_threads()),
@@ -229,7 +201,6 @@ impl RunTotals {
         Ok(films)
     }
 
-    /// Adds the results of a round.
     pub(super) fn enter(&mut self, setup: &Setup, kernel: &dyn Kernel, round: Round<'_>) {
         let Round { plan, sections, spans, counts, workers, asked, timed, merge_s } = round;
         // The round with the largest shortage of workers stands for all.
@@ -347,7 +318,6 @@ fn watched<T>(run: &Run, watch: Watch<'_>, work: impl FnOnce() -> Result<T>) -> 
     })
 }
 
-/// Data that all jobs of a round share.
 struct Run {
     kernel: Arc<dyn Kernel>,
     claims: PieceClaims,
@@ -355,13 +325,11 @@ struct Run {
     output: Box<dyn Output>,
 }
 
-/// The duration of a round, and the resource usage meanwhile.
 pub(super) struct Timed {
     pub(super) makespan_s: f64,
     pub(super) cpu: Option<Usage>,
 }
 
-/// The results of a round.
 pub(super) struct Round<'a> {
     pub(super) plan: &'a Plan,
     pub(super) sections: &'a [Range<u32>],

@@ -1,8 +1,8 @@
 //! Settings that have been checked, and the run itself.
 
-use super::cut::cut;
-use super::output::{self, Delivery, OUTPUTS, Output};
-use super::{Settings, Warning, available_threads, pilot};
+use super::cut::{costs, cut};
+use super::output::{self, OUTPUTS};
+use super::{Settings, Warning, available_threads};
 use crate::digest;
 use crate::error::{Error, InputError, Result};
 use crate::estimator::Estimator;
@@ -20,21 +20,22 @@ use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 /// A run that can start: all user input has been checked, and all names have been looked up.
+#[derive(Clone)]
 pub struct Setup {
     settings: Settings,
     subject: Subject,
     /// Made by the first run: a large scene's acceleration structure takes seconds to build, and a check of settings
     /// needs no kernel.
     built: OnceLock<Built>,
-    decomposition: Decomposition,
-    plan: Plan,
-    output: &'static output::Entry,
+    pub(super) decomposition: Decomposition,
+    /// The pieces of all requested samples.
+    pub(super) plan: Plan,
+    pub(super) output: &'static output::Entry,
     strategy: strategy::Entry,
     parameter: Option<String>,
     rank_rule: Option<RankRule>,
 }
 
-/// The subject of a run.
 #[derive(Clone)]
 enum Subject {
     Scene {
@@ -45,7 +46,7 @@ enum Subject {
     Workload(Workload),
 }
 
-/// A kernel, and the seconds of its construction.
+#[derive(Clone)]
 struct Built {
     kernel: Arc<dyn Kernel>,
     build_s: f64,
@@ -56,6 +57,17 @@ impl Subject {
         match self {
             Self::Scene { choice, .. } => Some(choice),
             Self::Workload(_) => None,
+        }
+    }
+
+    fn spp_multiple(&self) -> u32 {
+        self.choice().map_or(1, |choice| choice.estimator.spp_multiple)
+    }
+
+    fn kernel(&self, spec: &Spec) -> Result<Box<dyn Kernel>> {
+        match self {
+            Self::Scene { scene, choice } => choice.build(scene),
+            Self::Workload(workload) => Ok(workload.kernel(spec.width, spec.height, spec.seed)),
         }
     }
 }
@@ -75,7 +87,7 @@ impl Lab {
 
     /// The same for a loaded scene; `settings.scene` is not read.
     pub fn prepare_scene(&self, scene: Arc<Scene>, settings: Settings) -> Result<Setup> {
-        let choice = chosen(&scene, &settings, self.kernel_tables())?;
+        let choice = Box::new(kernel::choose_among(&scene, &settings.spec, self.kernel_tables())?);
         Setup::new(self, Subject::Scene { scene, choice }, settings)
     }
 }
@@ -107,13 +119,13 @@ impl Setup {
             }
             other => other,
         })?;
-        let Some(output) = output::find(&settings.output) else {
+        let Some(output) = OUTPUTS.iter().find(|entry| entry.name == settings.output) else {
             let names: Vec<&str> = OUTPUTS.iter().map(|entry| entry.name).collect();
             return Err(InputError::new("output", &settings.output, "there is none of that name")
                 .allowed(names.join(", "))
                 .into());
         };
-        let clamp = subject.choice().and_then(RenderOptions::clamp);
+        let clamp = subject.choice().and_then(|choice| choice.clamp);
         if clamp.is_some_and(|clamp| clamp.what == Clamped::Subpixel) && decomposition.splits_samples() {
             let problem = "cannot be combined with the subpixel clamp, which needs all samples of a pixel at once";
             return Err(InputError::new("decomposition", &settings.decomposition, problem).into());
@@ -137,25 +149,15 @@ impl Setup {
 
     /// The same run with other samples of the same radiance, without clamping.
     pub(super) fn pilot(&self, spp: u32, seed: u64) -> Result<Self> {
-        let mut settings = Settings { spp, ..self.settings.clone() };
-        (settings.spec.seed, settings.spec.clamp, settings.adaptive) = (seed, None, false);
-        check_spp(spp, &settings.spec.estimator, self.spp_multiple())?;
+        check_spp(spp, &self.settings.spec.estimator, self.spp_multiple())?;
         let plan = self.plan_of(from_ref(&(0..spp)))?;
-        let mut subject = self.subject.clone();
-        if let Subject::Scene { choice, .. } = &mut subject {
+        let mut pilot = Self { plan, built: OnceLock::new(), ..self.clone() };
+        let Settings { spp: own, spec, adaptive, .. } = &mut pilot.settings;
+        (*own, spec.seed, spec.clamp, *adaptive) = (spp, seed, None, false);
+        if let Subject::Scene { choice, .. } = &mut pilot.subject {
             **choice = choice.as_ref().clone().pilot(seed);
         }
-        Ok(Self {
-            settings,
-            subject,
-            built: OnceLock::new(),
-            decomposition: self.decomposition.clone(),
-            plan,
-            output: self.output,
-            strategy: self.strategy,
-            parameter: self.parameter.clone(),
-            rank_rule: self.rank_rule.clone(),
-        })
+        Ok(pilot)
     }
 
     /// The same run with `estimator` in place of the one that the settings name. Records say `name`.
@@ -187,19 +189,18 @@ impl Setup {
         self.settings.spec.estimator = name.to_string();
         if let Subject::Scene { scene, choice } = &mut self.subject {
             let estimators = &[CustomEstimator::new(name, estimator)];
-            *choice = chosen(scene, &self.settings, Tables { estimators, ..kernel::TABLES })?;
+            let tables = Tables { estimators, ..kernel::TABLES };
+            **choice = kernel::choose_among(scene, &self.settings.spec, tables)?;
         }
         check_spp(self.settings.spp, name, self.spp_multiple())?;
         self.built = OnceLock::new();
         Ok(self)
     }
 
-    /// The settings of the run.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// The scene's name, or the workload's.
     pub fn name(&self) -> &str {
         match &self.subject {
             Subject::Scene { scene, .. } => &scene.name,
@@ -215,7 +216,6 @@ impl Setup {
         }
     }
 
-    /// The files that the scene was read from.
     pub fn files(&self) -> &[PathBuf] {
         self.scene().map_or(&[], |(scene, _)| &scene.files)
     }
@@ -282,41 +282,19 @@ impl Setup {
 
     /// Whether the film's checksum is meaningful: the sampler draws the same random numbers each time.
     pub fn is_deterministic(&self) -> bool {
-        self.scene().is_none_or(|(_, choice)| choice.sampler().deterministic)
+        self.scene().is_none_or(|(_, choice)| choice.sampler.deterministic)
     }
 
-    /// The entry of the strategy in the table.
     pub fn strategy(&self) -> &strategy::Entry {
         &self.strategy
     }
 
-    /// The rule by which processes share the jobs.
     pub fn rank_rule(&self) -> Option<&RankRule> {
         self.rank_rule.as_ref()
     }
 
-    /// The pieces of all requested samples.
-    pub(super) fn plan(&self) -> Plan {
-        self.plan.clone()
-    }
-
-    /// The decomposition of the film.
-    pub(super) fn decomposition(&self) -> &Decomposition {
-        &self.decomposition
-    }
-
-    /// Whether the order of the pieces depends on their costs.
-    pub(super) fn is_by_cost(&self) -> bool {
-        self.decomposition.is_by_cost()
-    }
-
-    /// The plan in the order of the hand-out.
     pub(super) fn ordered(&self, plan: Plan, kernel: &dyn Kernel) -> Plan {
-        if self.is_by_cost() { plan.clone().longest_first(&pilot::costs(&plan, kernel)) } else { plan }
-    }
-
-    pub(super) fn new_output(&self, delivery: Delivery) -> Result<Box<dyn Output>> {
-        (self.output.new)(delivery)
+        if self.decomposition.is_by_cost() { plan.clone().longest_first(&costs(&plan, kernel)) } else { plan }
     }
 
     pub(super) fn new_strategy(&self) -> Result<Box<dyn Strategy>> {
@@ -343,7 +321,7 @@ impl Setup {
         }
         let processors = available_threads();
         // Workers that serve devices wait for them.
-        let waiting = self.subject.choice().map_or(0, RenderOptions::devices_beside);
+        let waiting = self.subject.choice().map_or(0, |choice| choice.plan.devices_beside());
         if workers_used as usize > processors + waiting {
             warnings.push(Warning::Oversubscribed { workers: workers_used, processors });
         }
@@ -365,25 +343,4 @@ impl Setup {
         warnings.extend(counted.into_iter().filter(|(count, _)| *count > 0).map(|(_, warning)| warning));
         warnings
     }
-}
-
-impl Subject {
-    fn spp_multiple(&self) -> u32 {
-        match self {
-            Self::Scene { choice, .. } => choice.estimator().spp_multiple,
-            Self::Workload(_) => 1,
-        }
-    }
-
-    fn kernel(&self, spec: &Spec) -> Result<Box<dyn Kernel>> {
-        match self {
-            Self::Scene { scene, choice } => choice.build(scene),
-            Self::Workload(workload) => Ok(workload.kernel(spec.width, spec.height, spec.seed)),
-        }
-    }
-}
-
-/// The choice of a scene's kernel.
-fn chosen(scene: &Scene, settings: &Settings, tables: Tables<'_>) -> Result<Box<RenderOptions>> {
-    kernel::choose_among(scene, &settings.spec, tables).map(Box::new)
 }

@@ -18,15 +18,11 @@ use std::slice::from_ref;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// A job that a process has finished.
 pub struct DoneJob {
-    /// Index of its piece in the plan.
     pub index: usize,
     /// When it ran, in seconds since the run's start, and on which of all workers.
     pub span: JobSpan,
-    /// The counts of its paths.
     pub counts: Counts,
-    /// The sums of its pixels.
     pub tile: TileBuffer,
 }
 
@@ -42,7 +38,6 @@ pub struct Share<'a> {
     done: Vec<DoneJob>,
 }
 
-/// Data that the jobs of one hand-out share.
 struct Handout {
     kernel: Arc<dyn Kernel>,
     plan: Arc<Plan>,
@@ -53,11 +48,8 @@ struct Handout {
 
 /// The jobs of a round that several processes rendered.
 pub struct MergedShare {
-    /// All of them, in any order.
     pub done: Vec<DoneJob>,
-    /// Workers of all processes together.
     pub workers: usize,
-    /// Seconds until all were done.
     pub makespan_s: f64,
 }
 
@@ -69,6 +61,15 @@ impl Setup {
         let strategy = self.new_strategy()?;
         let (reserved, done) = (VecDeque::new(), Vec::new());
         Ok(Share { setup: self, kernel, plan, strategy, start: Instant::now(), reserved, done })
+    }
+
+    /// The outcome of the run that several shares make together.
+    pub fn assembled(&self, gathered: MergedShare) -> Result<Outcome> {
+        let (spec, samples) = (&self.settings().spec, 0..self.settings().spp);
+        let mut totals = RunTotals::new();
+        let films = totals.assemble(self, from_ref(&samples), gathered)?;
+        let film = films.into_iter().next().unwrap_or_else(|| Film::new(spec.width, spec.height));
+        Ok(totals.outcome(self, samples.end, film))
     }
 }
 
@@ -90,7 +91,6 @@ impl Share<'_> {
         self.start = Instant::now();
     }
 
-    /// Seconds since the run began.
     pub fn elapsed_s(&self) -> f64 {
         self.start.elapsed().as_secs_f64()
     }
@@ -144,20 +144,8 @@ impl Share<'_> {
         &self.done[self.done.len().saturating_sub(count)..]
     }
 
-    /// Takes its finished jobs.
     pub fn take_done(&mut self) -> Vec<DoneJob> {
         mem::take(&mut self.done)
-    }
-}
-
-impl Setup {
-    /// The outcome of the run that several shares make together.
-    pub fn assembled(&self, gathered: MergedShare) -> Result<Outcome> {
-        let (spec, samples) = (&self.settings().spec, 0..self.settings().spp);
-        let mut totals = RunTotals::new();
-        let films = totals.assemble(self, from_ref(&samples), gathered)?;
-        let film = films.into_iter().next().unwrap_or_else(|| Film::new(spec.width, spec.height));
-        Ok(totals.outcome(self, samples.end, film))
     }
 }
 

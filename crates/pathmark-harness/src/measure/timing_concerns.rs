@@ -3,9 +3,7 @@
 use std::fmt;
 
 /// The warnings about the time of a run; the others concern its image.
-const REASONS: [&str; 5] = ["foreign-load", "steal", "slowed", "drift", TOO_SHORT];
-/// The warning that another run would get as well.
-const TOO_SHORT: &str = "too-short";
+const REASONS: [&str; 5] = ["foreign-load", "steal", "slowed", "drift", "too-short"];
 
 /// The number of rows, and of those whose times are in doubt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -29,12 +27,6 @@ impl TimingConcerns {
         REASONS.iter().any(|reason| warnings.contains(reason))
     }
 
-    /// Whether another run might be free of a reason for which the time of a row with these warnings is in doubt.
-    pub fn may_pass(warnings: &str) -> bool {
-        REASONS.iter().any(|reason| *reason != TOO_SHORT && warnings.contains(reason))
-    }
-
-    /// Counts a row.
     pub fn add(&mut self, warnings: &str) {
         self.rows += 1;
         self.doubted += usize::from(Self::concern(warnings));
@@ -43,7 +35,6 @@ impl TimingConcerns {
         }
     }
 
-    /// Counts the rows of another sweep.
     pub fn merge(&mut self, other: &Self) {
         self.rows += other.rows;
         self.doubted += other.doubted;
@@ -52,12 +43,10 @@ impl TimingConcerns {
         }
     }
 
-    /// Number of rows in doubt.
     pub fn count(&self) -> usize {
         self.doubted
     }
 
-    /// Whether any row is in doubt.
     pub fn is_any(&self) -> bool {
         self.doubted > 0
     }
@@ -93,11 +82,6 @@ mod tests {
         assert_eq!((doubts.is_any(), doubts.is_high()), (true, false));
         doubts.add("too-short");
         assert_eq!(doubts.to_string(), "2 of 12 rows have times in doubt (1 slowed, 1 drift, 1 too-short)");
-        assert!(
-            TimingConcerns::may_pass("too-short;drift(+30 %)")
-                && !TimingConcerns::may_pass("too-short")
-                && !TimingConcerns::may_pass("")
-        );
         assert!(doubts.is_high() && !TimingConcerns::of(["biased"]).is_any() && !TimingConcerns::default().is_high());
     }
 

@@ -14,13 +14,11 @@ use super::separable::{Kernel, convolve};
 use crate::error::Result;
 use crate::image_io::{Image, tone_map};
 
-/// Pixels per degree of visual angle.
 const PIXELS_PER_DEGREE: f64 = 0.7 * (3840.0 / 0.7) * (PI / 180.0);
 /// Gaussians of the contrast sensitivity for light, red-green and blue-yellow: weight and width, in degrees squared.
 const SENSITIVITY: [&[(f64, f64)]; 3] = [&[(1.0, 0.0047)], &[(1.0, 0.0053)], &[(34.1, 0.04), (13.5, 0.025)]];
 /// The widest of these Gaussians, which sets the radius of all contrast filters.
 const WIDEST: f64 = 0.04;
-/// Exponent of the colour difference.
 const COLOUR_EXPONENT: f64 = 0.7;
 /// Differences up to this share of the largest take [`NEAR_RANGE`] of the range of the result.
 const NEAR: f64 = 0.4;
@@ -35,14 +33,12 @@ const TO_XYZ: [[f64; 3]; 3] = [
     [2_613_072.0 / 12_288_897.0, 8_788_810.0 / 12_288_897.0, 887_015.0 / 12_288_897.0],
     [1_425_312.0 / 73_733_382.0, 8_788_810.0 / 73_733_382.0, 70_074_185.0 / 73_733_382.0],
 ];
-/// The inverse of [`TO_XYZ`].
 const FROM_XYZ: [[f64; 3]; 3] = [
     [3.241_003_232_976_358_7, -1.537_398_969_488_785_5, -0.498_615_881_996_363],
     [-0.969_224_252_202_516_6, 1.875_929_983_695_176, 0.041_554_226_340_084_724],
     [0.055_639_419_851_975_444, -0.204_011_206_123_909_97, 1.057_148_977_187_533_5],
 ];
 
-/// Returns the mean of FLIP over the pixels.
 pub(super) fn flip(test: &Image, reference: &Image) -> f64 {
     mean(&differences(test, reference))
 }
@@ -59,7 +55,6 @@ fn mean(map: &[f64]) -> f64 {
     map.iter().sum::<f64>() / map.len() as f64
 }
 
-/// FLIP of each pixel.
 fn differences(test: &Image, reference: &Image) -> Vec<f64> {
     let width = test.width as usize;
     let [test, reference] = [test, reference].map(opponent);
@@ -81,16 +76,11 @@ fn relative_xyz(rgb: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| xyz[i] / white[i])
 }
 
-/// Decodes an sRGB value to a linear one.
-fn decoded(coded: f64) -> f64 {
-    if coded <= 0.040_45 { coded / 12.92 } else { libm::pow((coded + 0.055) / 1.055, 2.4) }
-}
-
 /// Planes of light, red-green and blue-yellow (Y, Cx, Cz), in which the eye's sensitivity is known.
 fn opponent(image: &Image) -> [Vec<f64>; 3] {
     let mut planes = [(); 3].map(|()| Vec::with_capacity(image.pixels.len()));
     for pixel in &image.pixels {
-        let [x, y, z] = relative_xyz(pixel.map(|v| decoded(tone_map::display(v))));
+        let [x, y, z] = relative_xyz(pixel.map(|v| tone_map::srgb_linear(tone_map::display(v))));
         for (plane, value) in planes.iter_mut().zip([116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]) {
             plane.push(value);
         }

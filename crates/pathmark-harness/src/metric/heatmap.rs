@@ -7,7 +7,7 @@
 
 use std::f64::consts::PI;
 
-use super::{check_sizes, percentile};
+use super::{check_sizes, pointwise};
 use crate::error::{InputError, Result};
 use crate::image_io::{Image, tone_map};
 
@@ -23,9 +23,7 @@ const QUANTILE: f64 = 0.99;
 /// Errors as colours, ready for a display.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Heatmap {
-    /// Pixels in a row.
     pub width: u32,
-    /// Number of rows.
     pub height: u32,
     /// Red, green, blue per pixel, row 0 at the top, as a display shows them.
     pub pixels: Vec<[u8; 3]>,
@@ -46,7 +44,7 @@ impl Heatmap {
 /// Without one, it is the 99th percentile of this map's errors.
 pub fn heatmap(test: &Image, reference: &Image, scale: Option<f64>) -> Result<Heatmap> {
     check_sizes(test, reference)?;
-    let errors = percentile::errors(test, reference);
+    let errors = pointwise::errors(test, reference);
     let scale = scale.unwrap_or_else(|| quantile(&errors));
     if !(scale > 0.0 && scale.is_finite()) {
         return Err(InputError::new("scale", scale.to_string(), "must be positive and finite").into());

@@ -10,17 +10,17 @@
 mod cross;
 mod flip;
 mod heatmap;
-mod percentile;
 mod pointwise;
 mod separable;
 mod ssim;
-mod tolerance;
 
-pub use cross::{bias_squared, cross_mse, cross_mse_display, cross_products, cross_rel_mse, root};
+pub use cross::{
+    bias_squared, brighter_pixels, cross_mse, cross_mse_display, cross_products, cross_rel_mse, root, share_within,
+};
 pub use flip::flip_map;
 pub use heatmap::{Heatmap, heat_colour, heatmap};
 pub use pointwise::REL_MSE_EPSILON;
-pub use tolerance::{brighter_pixels, share_within};
+use pointwise::percentile;
 
 use crate::error::{InputError, Result};
 use crate::image_io::Image;
@@ -30,18 +30,15 @@ use crate::image_io::Image;
 pub struct Entry {
     /// Its name on the command line and in tables.
     pub name: &'static str,
-    /// One-line description for a list.
     pub about: &'static str,
     /// Whether it measures linear radiance; otherwise display values.
     pub linear: bool,
     /// Its value for equal pictures.
     pub best: f64,
-    /// Computes the metric of a picture and a reference of the same size.
     formula: Formula,
 }
 
 impl Entry {
-    /// Computes the metric of `test` against `reference`.
     pub fn compute(&self, test: &Image, reference: &Image) -> Result<f64> {
         check_sizes(test, reference)?;
         Ok((self.formula)(test, reference))
@@ -55,26 +52,22 @@ const fn error(name: &'static str, about: &'static str, formula: Formula) -> Ent
     Entry { name, about, linear: true, best: 0.0, formula }
 }
 
-/// A metric of display values.
 const fn displayed(name: &'static str, about: &'static str, best: f64, formula: Formula) -> Entry {
     Entry { name, about, linear: false, best, formula }
 }
 
-/// Every metric.
 pub const METRICS: &[Entry] = &[
     error("mse", "mean squared error over pixels and channels", pointwise::mse),
-    error("rmse", "root of the mean squared error over pixels and channels", pointwise::rmse),
+    error("rmse", "root of the mean squared error over pixels and channels", |t, r| pointwise::mse(t, r).sqrt()),
     error("rel-mse", "mean of the squared error over (squared reference + 0.01)", pointwise::rel_mse),
     error("mae", "mean absolute error over pixels and channels", pointwise::mae),
-    error(
-        "error-50",
-        "half of the pixels have at most this error (root of its mean square over channels)",
-        percentile::half,
-    ),
-    error("error-90", "90 % of the pixels have at most this error", percentile::nine_tenths),
-    error("error-99", "99 % of the pixels have at most this error", percentile::all_but_a_hundredth),
-    error("error-100", "the largest error of a pixel", percentile::largest),
-    displayed("rmse-display", "rmse of display values in [0, 1]", 0.0, pointwise::rmse_display),
+    error("error-50", "half of the pixels have at most this error (root of its mean square over channels)", |t, r| {
+        percentile(0.5, t, r)
+    }),
+    error("error-90", "90 % of the pixels have at most this error", |t, r| percentile(0.9, t, r)),
+    error("error-99", "99 % of the pixels have at most this error", |t, r| percentile(0.99, t, r)),
+    error("error-100", "the largest error of a pixel", |t, r| percentile(1.0, t, r)),
+    displayed("rmse-display", "rmse of display values in [0, 1]", 0.0, |t, r| pointwise::mse_display(t, r).sqrt()),
     displayed("psnr", "peak signal-to-noise ratio of display values, in dB", f64::INFINITY, pointwise::psnr),
     displayed(
         "flip",
@@ -85,7 +78,6 @@ pub const METRICS: &[Entry] = &[
     displayed("ssim", "structural similarity of display luma; 1 is equal, NaN below 11 x 11 pixels", 1.0, ssim::ssim),
 ];
 
-/// The metric called `name`.
 pub fn find(name: &str) -> Result<&'static Entry> {
     METRICS.iter().find(|entry| entry.name == name).ok_or_else(|| {
         let names: Vec<_> = METRICS.iter().map(|entry| entry.name).collect();

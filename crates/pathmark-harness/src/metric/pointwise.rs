@@ -1,4 +1,5 @@
-//! Pointwise metrics: means over all channels of all pixels. NaN for pictures without pixels.
+//! Pointwise metrics: means over all channels of all pixels, and percentiles of the pixel error. NaN for pictures without
+//! pixels.
 
 use crate::image_io::{Image, tone_map};
 
@@ -12,7 +13,7 @@ fn mean(test: &Image, reference: &Image, f: impl Fn(f64, f64) -> f64) -> f64 {
     values.map(|(&t, &r)| f(t, r)).sum::<f64>() / (3 * test.pixels.len()) as f64
 }
 
-fn mse_display(test: &Image, reference: &Image) -> f64 {
+pub(super) fn mse_display(test: &Image, reference: &Image) -> f64 {
     mean(test, reference, |t, r| {
         let d = tone_map::display(t) - tone_map::display(r);
         d * d
@@ -21,10 +22,6 @@ fn mse_display(test: &Image, reference: &Image) -> f64 {
 
 pub(super) fn mse(test: &Image, reference: &Image) -> f64 {
     mean(test, reference, |t, r| (t - r) * (t - r))
-}
-
-pub(super) fn rmse(test: &Image, reference: &Image) -> f64 {
-    mse(test, reference).sqrt()
 }
 
 /// The relative MSE of Rousselle, Knaus and Zwicker, "Adaptive sampling and reconstruction using greedy error minimization",
@@ -37,12 +34,30 @@ pub(super) fn mae(test: &Image, reference: &Image) -> f64 {
     mean(test, reference, |t, r| (t - r).abs())
 }
 
-pub(super) fn rmse_display(test: &Image, reference: &Image) -> f64 {
-    mse_display(test, reference).sqrt()
-}
-
 /// Peak signal-to-noise ratio in dB of display values, whose peak is 1; linear radiance has no peak. Infinite for equal
 /// pictures.
 pub(super) fn psnr(test: &Image, reference: &Image) -> f64 {
     -10.0 * libm::log10(mse_display(test, reference))
+}
+
+/// The error of each pixel: the root of the mean over channels of the squared difference in linear radiance.
+pub(super) fn errors(test: &Image, reference: &Image) -> Vec<f64> {
+    let error = |(t, r): (&[f64; 3], &[f64; 3])| {
+        let squares: f64 = t.iter().zip(r).map(|(t, r)| (t - r) * (t - r)).sum();
+        (squares / 3.0).sqrt()
+    };
+    test.pixels.iter().zip(&reference.pixels).map(error).collect()
+}
+
+/// Returns the smallest error that at least this share of the pixels does not exceed; NaN without pixels. Unlike a mean,
+/// it shows how the error is distributed over pixels. A few fireflies affect only the highest percentiles, and so do a few
+/// pixels that are not finite: an error that is NaN counts as larger than any number.
+pub(super) fn percentile(share: f64, test: &Image, reference: &Image) -> f64 {
+    let mut errors = errors(test, reference);
+    if errors.is_empty() {
+        return f64::NAN;
+    }
+    errors.sort_by(|a, b| a.is_nan().cmp(&b.is_nan()).then(a.total_cmp(b)));
+    let rank = (share * errors.len() as f64).ceil() as usize;
+    errors[rank.clamp(1, errors.len()) - 1]
 }

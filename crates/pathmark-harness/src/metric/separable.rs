@@ -4,17 +4,14 @@
 pub(super) struct Kernel(Vec<f64>);
 
 impl Kernel {
-    /// Creates a kernel from the weight at each offset.
     pub(super) fn new(radius: usize, weight: impl Fn(f64) -> f64) -> Self {
         Self((0..=2 * radius).map(|k| weight(k as f64 - radius as f64)).collect())
     }
 
-    /// The sum of all weights.
     pub(super) fn sum(&self) -> f64 {
         self.0.iter().sum()
     }
 
-    /// Every weight times `factor`.
     pub(super) fn scaled(&self, factor: f64) -> Self {
         Self(self.0.iter().map(|weight| weight * factor).collect())
     }

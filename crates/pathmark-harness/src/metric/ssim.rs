@@ -5,16 +5,17 @@
 //! K2 = 0.03, and the mean over all places where the whole window lies in the picture. Their dynamic range L is 1 here, since
 //! the pictures are the luma of display values in [0, 1].
 
+use super::separable::{Kernel, convolve};
 use crate::image_io::{Image, tone_map};
 
 const WINDOW: usize = 11;
+const RADIUS: usize = WINDOW / 2;
 const SIGMA: f64 = 1.5;
 const C1: f64 = 0.01 * 0.01;
 const C2: f64 = 0.03 * 0.03;
 /// Luma of gamma-coded red, green and blue: ITU-R BT.601.
 const LUMA: [f64; 3] = [0.299, 0.587, 0.114];
 
-/// Returns the similarity: 1 for equal pictures; NaN if no window fits.
 pub(super) fn ssim(test: &Image, reference: &Image) -> f64 {
     let (width, height) = (test.width as usize, test.height as usize);
     if width < WINDOW || height < WINDOW {
@@ -41,24 +42,12 @@ fn luma(image: &Image) -> Vec<f64> {
     image.pixels.iter().map(of).collect()
 }
 
-/// Returns the weighted mean around every pixel where the window fits: smaller by `WINDOW - 1` in both directions. The
-/// window is separable, so it is applied to rows first and to columns after.
+/// Returns the weighted mean around every pixel where the window fits: smaller by `WINDOW - 1` in both directions.
 fn blur(values: &[f64], width: usize) -> Vec<f64> {
-    let weights = weights();
-    let along = |at: &dyn Fn(usize) -> f64| weights.iter().enumerate().map(|(k, weight)| weight * at(k)).sum::<f64>();
-    let narrow = width + 1 - WINDOW;
-    let rows: Vec<f64> =
-        values.chunks_exact(width).flat_map(|row| row.windows(WINDOW).map(|window| along(&|k| window[k]))).collect();
-    let places = rows.len() - (WINDOW - 1) * narrow;
-    (0..places).map(|i| along(&|k| rows[i + k * narrow])).collect()
-}
-
-fn weights() -> [f64; WINDOW] {
-    let bell = |k: usize| {
-        let d = (k as f64 - (WINDOW / 2) as f64) / SIGMA;
-        libm::exp(-0.5 * d * d)
-    };
-    let weights: [f64; WINDOW] = std::array::from_fn(bell);
-    let sum: f64 = weights.iter().sum();
-    weights.map(|weight| weight / sum)
+    let bell = |x: f64| libm::exp(-0.5 * (x / SIGMA) * (x / SIGMA));
+    let sum = Kernel::new(RADIUS, bell).sum();
+    let window = Kernel::new(RADIUS, |x| bell(x) / sum);
+    let means = convolve(values, width, &window, &window);
+    let rows = means.chunks_exact(width).skip(RADIUS).take(values.len() / width + 1 - WINDOW);
+    rows.flat_map(|row| &row[RADIUS..width - RADIUS]).copied().collect()
 }

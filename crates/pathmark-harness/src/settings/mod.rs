@@ -26,7 +26,6 @@ pub(crate) const LARGEST_THREADS: usize = 1 << 14;
 /// Most bytes that numbers of the user may reserve at once. Images of the largest size need a quarter of them, in
 /// pieces of usual sizes.
 pub const LARGEST_BYTES: u64 = 16 << 30;
-/// Most samples per pixel.
 pub const LARGEST_SPP: u32 = 1 << 24;
 /// Largest seed of an image under test: the seeds above belong to references.
 pub const LARGEST_SEED: u64 = REFERENCE_SEEDS - 1;
@@ -59,7 +58,6 @@ macro_rules! asked {
         #[serde(deny_unknown_fields)]
         pub struct Settings {
             $($fields)*
-            /// The specification from which the kernel is built.
             pub spec: Spec,
         }
 

@@ -11,7 +11,6 @@ use crate::simd::{Level, levels};
 use std::iter::once;
 use std::sync::LazyLock;
 
-/// The setting of two numbers.
 const SIZE: &str = "size";
 
 #[derive(Clone, Copy)]
@@ -28,7 +27,6 @@ pub struct Setting {
     pub about: &'static str,
     /// The value without the option; empty if it depends on the scene or the machine.
     pub default: &'static str,
-    /// The type of its value.
     pub kind: Kind,
     /// The values that an experiment means by `all`.
     pub all: Option<fn(&Lab) -> Vec<String>>,
@@ -51,9 +49,7 @@ pub struct Setting {
 
 pub(crate) type Access = fn(&mut Settings) -> &mut dyn Value;
 
-/// The properties that the list uses.
 impl Setting {
-    /// A setting without properties.
     pub(crate) const NEW: Self = Self {
         name: "",
         changes_image: false,
@@ -89,15 +85,11 @@ impl Setting {
     pub(crate) fn strategies(lab: &Lab) -> Vec<String> {
         lab.strategies().iter().map(|entry| entry.name.to_string()).collect()
     }
-}
 
-impl Setting {
-    /// The setting of that name.
     pub fn named(name: &str) -> Option<&'static Self> {
         SETTINGS.iter().find(|setting| setting.name == name)
     }
 
-    /// The columns of a row that hold its value.
     pub fn columns(&self) -> impl Iterator<Item = &'static str> + use<> {
         once(self.column).chain(self.second_column)
     }
@@ -123,7 +115,6 @@ impl Setting {
         self.word.replace("{}", text)
     }
 
-    /// Whether figures name rows by it.
     pub fn is_label(&self) -> bool {
         !self.label.is_empty()
     }

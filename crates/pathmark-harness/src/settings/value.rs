@@ -4,24 +4,19 @@ use super::table::parse_size;
 use crate::kernel::Spec;
 use std::str::FromStr;
 
-/// The type of a setting's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     Name,
     /// A name, or a choice that fits the scene.
     Auto,
-    /// Yes or no.
     Switch,
     Count,
-    /// Samples per pixel.
     Samples,
     Seed,
     Workers,
-    /// Columns and rows.
     Size,
 }
 
-/// A value as text.
 pub(crate) trait Value {
     fn set(&mut self, text: &str) -> Option<()>;
     /// Empty if it is left to the scene or the estimator.
@@ -32,7 +27,6 @@ pub(crate) trait Value {
 pub trait Asked {
     /// Its type in a row and in keys.
     type Column;
-    /// The name of that type.
     const COLUMN: &'static str;
     const KIND: Kind;
 
@@ -120,7 +114,6 @@ impl<T: FromStr + ToString> Value for Option<T> {
     }
 }
 
-/// Columns and rows.
 impl Value for Spec {
     fn set(&mut self, text: &str) -> Option<()> {
         (self.width, self.height) = parse_size(text).ok()?;

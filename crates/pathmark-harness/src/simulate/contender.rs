@@ -1,6 +1,6 @@
 //! Contenders of a forecast: strategies of the table with their costs on this machine, and an ideal one for comparison.
 
-use super::bounds::longest_first;
+use super::forecast::longest_first;
 use super::hardware::Hardware;
 use super::overhead::Overheads;
 use super::replay::{Replay, replay};
@@ -14,18 +14,13 @@ use crate::strategy::{ChunkRule, Discipline};
 pub struct Contender {
     /// The name in tables: a strategy with its parameter if it has one.
     pub name: String,
-    /// How it hands out jobs.
     pub discipline: Discipline,
-    /// The order in which it gets the jobs.
     pub order: Order,
-    /// The costs of its mechanism.
     pub overheads: Overheads,
 }
 
-/// The order in which a discipline gets the jobs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
-    /// By job index.
     ByIndex,
     /// The longest first, which requires all costs to be known beforehand.
     LongestFirst,
@@ -85,11 +80,10 @@ pub fn contenders(lab: &Lab, rows: &[CalibrationRow]) -> Vec<Contender> {
         contenders.push(Contender { name: row.strategy.clone(), discipline, order: Order::ByIndex, overheads });
     }
     let known = contenders.iter().filter(|contender| matches!(contender.discipline, Discipline::Chunks(_)));
-    let known = known.filter_map(|contender| Some((contender.overheads.take_s()?, &contender.overheads)));
-    if let Some(cheapest) = known.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, overheads)| overheads.clone()) {
-        for contender in contenders.iter_mut().filter(|contender| !contender.overheads.knows_chunks()) {
-            contender.overheads = std::mem::take(&mut contender.overheads).with_chunks_of(&cheapest);
-        }
+    let known = known.filter_map(|contender| contender.overheads.place.as_ref());
+    let cheapest = known.min_by(|a, b| a.take_s.total_cmp(&b.take_s)).cloned();
+    for contender in &mut contenders {
+        contender.overheads.place = contender.overheads.place.take().or_else(|| cheapest.clone());
     }
     share_the_start(&mut contenders, rows);
     contenders
@@ -101,10 +95,10 @@ fn share_the_start(contenders: &mut [Contender], rows: &[CalibrationRow]) {
         !contender.has_a_thread_per_job() && own.clone().all(|row| row.started == row.threads) && own.count() > 0
     };
     let (mut starters, _): (Vec<&mut Contender>, Vec<_>) = contenders.iter_mut().partition(|one| starts_workers(one));
-    let starts: Vec<f64> = starters.iter().map(|contender| contender.overheads.start_s()).collect();
+    let starts: Vec<f64> = starters.iter().map(|contender| contender.overheads.start_s).collect();
     if let Some(start_s) = median(&starts) {
         for contender in &mut starters {
-            contender.overheads = std::mem::take(&mut contender.overheads).with_start(start_s);
+            contender.overheads.start_s = start_s;
         }
     }
 }
@@ -134,7 +128,7 @@ mod tests {
         assert_eq!(contenders.len(), STRATEGIES.len());
         for contender in &contenders {
             let at = contender.overheads.at(2);
-            assert!(contender.overheads.knows_chunks(), "{}", contender.name);
+            assert!(contender.overheads.place.is_some(), "{}", contender.name);
             let pays = at.take_s > 0.0 && at.shared_s > 0.0;
             assert!(pays || !matches!(contender.discipline, Discipline::Chunks(_)), "{}: {at:?}", contender.name);
         }

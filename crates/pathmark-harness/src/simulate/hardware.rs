@@ -6,28 +6,21 @@
 use rand::Rng;
 use rand_pcg::Pcg32;
 
-/// The processors of the workers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Hardware {
-    /// The speed of each processor.
     pub speeds: Speeds,
-    /// Interruptions of the processors; `None` for none.
     pub noise: Option<Noise>,
 }
 
 /// The speed of each processor, relative to the one on which the costs were measured.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Speeds {
-    /// All as fast as that one.
     #[default]
     Identical,
-    /// The first processor has this speed, the others 1.
     OneSlow(f64),
     /// Performance and efficient cores. The system fills the fast ones first.
     Mixed {
-        /// Number of processors with speed 1.
         performance: usize,
-        /// The speed of all other processors.
         efficient: f64,
     },
 }
@@ -59,7 +52,6 @@ impl Noise {
 }
 
 impl Hardware {
-    /// The speed of one processor, counted from 0.
     pub fn speed(&self, processor: usize) -> f64 {
         match self.speeds {
             Speeds::OneSlow(speed) if processor == 0 => speed,
@@ -77,7 +69,6 @@ impl Hardware {
     }
 }
 
-/// One processor at work.
 pub(super) struct Processor {
     speed: f64,
     interruptions: Option<Interruptions>,
@@ -87,7 +78,6 @@ struct Interruptions {
     length_s: f64,
     /// Mean working time between two of them, in seconds.
     mean_s: f64,
-    /// Working time until the next one.
     next_s: f64,
     random: Pcg32,
 }

@@ -16,20 +16,10 @@
 //! # Ok::<(), pathmark_harness::strategy::StrategyError>(())
 //! ```
 //!
-//! # Simplifications of the model
-//!
-//! * A job costs the same on every worker and beside every neighbour: no shared caches, memory bandwidth, clock rates or sibling threads.
-//! * Each worker has its own processor. Only a thread per job is modelled with more threads than processors.
-//! * A worker that finds no job stops; a real one searches on, which slows the others.
-//! * Moving jobs between queues takes no extra time; real thieves pay more than owners.
-//! * Threads that run a job cost more than empty ones (their stacks are touched, they are moved and preempted). A
-//!   thread per job therefore looks too fast, by up to a tenth where jobs take a millisecond.
-//! * Contention at a shared place is that of the largest number of threads that was measured.
+//! docs/simulation.md says what the model leaves out.
 //!
 //! [`Discipline`]: crate::strategy::Discipline
 
-mod agreement;
-mod bounds;
 mod contender;
 mod forecast;
 mod hardware;
@@ -38,12 +28,10 @@ mod prediction;
 mod ranks;
 mod replay;
 
-pub use agreement::{Agreement, agreement};
-pub use bounds::{Bounds, bounds, longest_first};
 pub use contender::{Contender, Order, contenders};
-pub use forecast::{Forecast, forecast};
+pub use forecast::{Bounds, Forecast, bounds, forecast, longest_first};
 pub use hardware::{Hardware, Noise, Speeds};
 pub use overhead::{Overhead, Overheads};
-pub use prediction::{DISTURBED, Observed, Prediction, predict};
+pub use prediction::{Agreement, DISTURBED, Observed, Prediction, agreement, predict};
 pub use ranks::{Cluster, Crew, Messages};
 pub use replay::{Replay, replay};

@@ -31,16 +31,16 @@ pub struct Overhead {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overheads {
     run_s: f64,
-    start_s: f64,
+    pub(super) start_s: f64,
     job_s: f64,
-    /// The cost of a chunk; `None` if the rows have too few chunks to fit it.
-    place: Option<Place>,
+    /// The cost of a chunk; `None` if the rows have too few chunks to fit it, and chunks are then free.
+    pub(super) place: Option<Place>,
 }
 
 /// The shared place: all workers take from it.
 #[derive(Debug, Clone, PartialEq, Default)]
-struct Place {
-    take_s: f64,
+pub(super) struct Place {
+    pub(super) take_s: f64,
     /// Seconds between two hand-outs if this many workers, at least 2, ask without a pause; ascending.
     served: Vec<(usize, f64)>,
 }
@@ -54,8 +54,7 @@ impl Overheads {
     /// * The shared place is a chunk rule that hands out single jobs, or a queue in which all jobs start. The slope at
     ///   p threads is used as its rate, although the place could be faster than p workers.
     /// * A rule with larger chunks, or with chunks that depend on the clock, has too few chunks to separate their cost
-    ///   from the jobs'. [`Overheads::knows_chunks`] is then false, and chunks are free until
-    ///   [`Overheads::with_chunks_of`].
+    ///   from the jobs'.
     pub fn fit<'a>(rows: impl IntoIterator<Item = &'a CalibrationRow>, discipline: Discipline) -> Self {
         let rows: Vec<&CalibrationRow> = rows.into_iter().collect();
         let mut threads: Vec<usize> = rows.iter().map(|row| row.threads).collect();
@@ -89,33 +88,6 @@ impl Overheads {
             _ => (first.slope, Some(Place::default())),
         };
         Self { run_s: over_threads.at_zero, start_s: over_threads.slope, job_s, place }
-    }
-
-    /// Whether the rows determined the cost of a chunk.
-    pub fn knows_chunks(&self) -> bool {
-        self.place.is_some()
-    }
-
-    /// Returns these costs, with the cost of a chunk from `other`.
-    #[must_use]
-    pub fn with_chunks_of(self, other: &Self) -> Self {
-        Self { place: other.place.clone(), ..self }
-    }
-
-    /// The caller's seconds for one more worker.
-    pub(super) fn start_s(&self) -> f64 {
-        self.start_s
-    }
-
-    /// Returns these costs, with `start_s` seconds to start a worker.
-    #[must_use]
-    pub(super) fn with_start(self, start_s: f64) -> Self {
-        Self { start_s, ..self }
-    }
-
-    /// A worker's seconds for a chunk.
-    pub(super) fn take_s(&self) -> Option<f64> {
-        self.place.as_ref().map(|place| place.take_s)
     }
 
     /// Returns the costs with `workers` workers. The rate of the shared place is that of the largest measured number of
@@ -195,7 +167,7 @@ mod tests {
         let rows =
             rows(&[1, 2, 4], |n, p| RUN + p * START + n * if p > 1.0 { SERVED * f64::midpoint(p, 2.0) } else { JOB });
         let fitted = Overheads::fit(&rows, single());
-        assert!(fitted.knows_chunks());
+        assert!(fitted.place.is_some());
         for (workers, shared_s) in
             [(1, 0.0), (2, 2.0 * SERVED), (3, 2.0 * SERVED), (4, 3.0 * SERVED), (4096, 3.0 * SERVED)]
         {
@@ -233,9 +205,9 @@ mod tests {
     fn large_chunks_are_paid_for_elsewhere() {
         let halves = Discipline::Chunks(ChunkRule { size: |h| (h.jobs - h.start).div_ceil(2), parameter: 1 });
         let coarse = Overheads::fit(&rows(&[1, 2], |n, p| RUN + p * START + n * JOB / p), halves);
-        assert!(!coarse.knows_chunks() && close(coarse.at(2).job_s, JOB) && coarse.at(2).shared_s == 0.0);
+        assert!(coarse.place.is_none() && close(coarse.at(2).job_s, JOB) && coarse.at(2).shared_s == 0.0);
         let fine = Overheads::fit(&rows(&[1, 2], |n, p| RUN + p * START + n * SERVED), single());
-        let lent = coarse.with_chunks_of(&fine).at(2);
+        let lent = Overheads { place: fine.place.clone(), ..coarse }.at(2);
         assert!(close(lent.job_s, JOB) && close(lent.take_s, SERVED) && close(lent.shared_s, SERVED), "{lent:?}");
     }
 

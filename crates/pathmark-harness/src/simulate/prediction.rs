@@ -9,32 +9,24 @@ use std::collections::BTreeMap;
 /// causes it.
 pub const DISTURBED: f64 = 0.1;
 
-/// A measured run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observed {
-    /// The decomposition of the film.
     pub decomposition: String,
-    /// The strategy, with its parameter if it has one.
     pub strategy: String,
     pub workers: usize,
-    /// The measured makespan, in seconds.
     pub makespan_s: f64,
     /// Its CPU time over the CPU time of the serial run beside it; 1 if unknown. Above 1, the jobs themselves took
     /// longer than in the serial run, which no schedule can mend: processors share a core, or the clock rate is lower.
     pub inflation: f64,
 }
 
-/// The prediction for all runs of one schedule.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
-    /// The decomposition of the film.
     pub decomposition: String,
     pub strategy: String,
     pub workers: usize,
     pub runs: usize,
-    /// Median simulated makespan, in seconds.
     pub predicted_s: f64,
-    /// Median measured makespan, in seconds.
     pub measured_s: f64,
     /// Number of undisturbed runs: their CPU time is within [`DISTURBED`] of the serial run's beside them.
     pub undisturbed: usize,
@@ -85,6 +77,24 @@ pub fn predict<'a>(
     groups.into_iter().filter_map(prediction).collect()
 }
 
+/// Relative errors of predictions, as (predicted - measured) / measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Agreement {
+    /// The median error; a value far from 0 shows a systematic error.
+    pub bias: f64,
+    pub median_absolute: f64,
+    pub worst_absolute: f64,
+}
+
+/// Compares pairs of (predicted, measured) seconds; `None` without pairs.
+pub fn agreement(pairs: &[(f64, f64)]) -> Option<Agreement> {
+    let errors: Vec<f64> = pairs.iter().map(|(predicted, measured)| (predicted - measured) / measured).collect();
+    let absolute: Vec<f64> = errors.iter().map(|error| error.abs()).collect();
+    let median_absolute = median(&absolute)?;
+    let worst_absolute = absolute.iter().copied().fold(0.0, f64::max);
+    Some(Agreement { bias: median(&errors)?, median_absolute, worst_absolute })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -119,5 +129,12 @@ mod tests {
         let found = predict([(inflated, &[1.0, 1.0][..])], &[contender], 2);
         assert_eq!((found[0].predicted_s, found[0].ratio, found[0].plain_ratio), (2.0, 1.0, 2.0 / 3.0));
         assert_eq!((found[0].undisturbed, found[0].undisturbed_ratio), (0, None));
+    }
+
+    #[test]
+    fn errors_by_hand() {
+        let of = agreement(&[(1.0, 2.0), (3.0, 2.0), (2.5, 2.0), (2.0, 2.0)]).unwrap();
+        assert_eq!((of.bias, of.median_absolute, of.worst_absolute), (0.125, 0.375, 0.5));
+        assert_eq!(agreement(&[]), None);
     }
 }

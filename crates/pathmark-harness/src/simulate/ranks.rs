@@ -21,32 +21,23 @@ pub struct Messages {
     pub fetch_s: f64,
     /// How far a fetch depends on rank 0: 1 if it waits until rank 0 looks after MPI, 0 if it does not.
     pub needs_rank_0: f64,
-    /// Gathering one byte on rank 0.
     pub gathered_byte_s: f64,
 }
 
-/// Numbers of ranks and of threads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Crew {
-    /// Processes, at least 1.
     pub ranks: usize,
-    /// Threads of each process, at least 1.
     pub threads: usize,
 }
 
-/// The simulated machines and their configuration.
 pub struct Cluster<'a> {
-    /// Ranks and threads.
     pub crew: Crew,
-    /// The strategy within a rank.
     pub within: &'a Contender,
-    /// The costs of messages.
     pub messages: Messages,
     /// The processors of each rank. One slow core stands for a slow rank 0.
     pub hardware: Hardware,
 }
 
-/// The state of a rank in a replay.
 #[derive(Debug, Clone, Copy)]
 struct Rank {
     /// When it asks for its next chunk, and the earliest time at which it can begin that chunk.
@@ -56,7 +47,6 @@ struct Rank {
 }
 
 impl Cluster<'_> {
-    /// Seconds from handing over jobs of these costs until all are done.
     pub fn makespan_s(&self, costs: &[f64], distribution: Distribution) -> f64 {
         let ranks = self.crew.ranks;
         match distribution {
@@ -139,7 +129,6 @@ impl Cluster<'_> {
         last_s
     }
 
-    /// Rank 0 answers between its own chunks.
     fn with_a_working_master(&self, costs: &[f64], rule: ChunkRule) -> f64 {
         let mut chunks = rule.chunks(costs.len(), self.crew.ranks);
         let (mut ranks, mut now_s, mut last_s) = (self.ranks(), 0.0_f64, 0.0_f64);

@@ -2,10 +2,8 @@
 //! of the processor, while devices render others. All these kernels produce the same bits, so the assignment of pieces
 //! changes none.
 
-use super::missing::missing;
 use super::on_device::OnDevice;
-use super::plan::device_for;
-use super::settings::ForDevice;
+use super::plan::{ForDevice, device_for, missing};
 use crate::processor::{DEVICE_NAME, ON_PROCESSOR};
 use pathmark_tracer::error::{Error, InputError, Result};
 use pathmark_tracer::film::{Piece, TileBuffer};

@@ -31,7 +31,6 @@ pub(super) struct Items<'a> {
     pub(super) part: u32,
     /// Number of the first item of each piece.
     first: Vec<u64>,
-    /// Number of all items.
     pub(super) count: u64,
 }
 

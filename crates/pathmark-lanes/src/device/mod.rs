@@ -9,11 +9,9 @@
 
 mod hybrid;
 mod items;
-mod missing;
 mod on_device;
 mod plan;
 mod program;
-mod settings;
 mod tables;
 
 pub(crate) use hybrid::HYBRID;

@@ -1,9 +1,8 @@
 //! The kernel: launches of items, and the counts of what they took.
 
 use super::items::{Items, MOST_BLOCKS, OUT_WORDS, Placing};
-use super::missing::missing;
+use super::plan::{ForDevice, missing};
 use super::program;
-use super::settings::ForDevice;
 use super::tables;
 use pathmark_device::{DeviceError, Loaded};
 use pathmark_tracer::error::{Error, Result};
@@ -21,7 +20,6 @@ const LAUNCH_S: f64 = 0.25;
 const FIRST_SAMPLES: u64 = 1 << 14;
 /// Most items in a launch: their results take 24 MiB.
 const MOST_ITEMS: u64 = 1 << 18;
-/// The kernel.
 pub(super) struct OnDevice {
     id: String,
     loaded: Box<dyn Loaded>,
@@ -46,7 +44,7 @@ impl OnDevice {
         let failed = |error: DeviceError| system(&id, &error);
         let device = pathmark_device::open(&id).map_err(failed)?;
         let (numbers, words) = tables::of(scene, options, chosen);
-        let text = program::text(options.profile_effects(), &chosen.rules, chosen.precision);
+        let text = program::text(options.profile.effects, &chosen.rules, chosen.precision);
         let uses_single = chosen.precision == Precision::F32;
         let loaded = device.load(&text, uses_single, &numbers, &words).map_err(failed)?;
         let width = device.width();

@@ -1,14 +1,13 @@
 //! The entry of devices: whether one can render a scene with given settings, and which one.
 
-use super::missing::missing;
 use super::on_device::OnDevice;
-use super::settings::ForDevice;
 use super::tables::{SAMPLERS, is_known};
 use crate::lanes::MOST_IN_LANES;
 use crate::processor::DEVICE_NAME;
 use crate::sampler::InLanes as LaneSampler;
 use pathmark_device::Listed;
 use pathmark_tracer::error::{Error, InputError, Result};
+use pathmark_tracer::estimator::PathRules;
 use pathmark_tracer::kernel::{Kernel, KernelEntry, KernelPlan, Planned, RenderOptions, Request};
 use pathmark_tracer::math::Precision;
 use pathmark_tracer::scene::{ANGULAR_EMISSION, FOG, LENS, POINT_LIGHT, Scene};
@@ -45,6 +44,33 @@ fn obstacle(request: &Request<'_>) -> Option<&'static str> {
         (is_single && scene.owners.len() >= MOST_IN_LANES, "primitives"),
     ];
     obstacles.into_iter().find(|(is_there, _)| *is_there).map(|(_, name)| name)
+}
+
+/// The settings of the device kernel.
+#[derive(Debug, Clone)]
+pub(super) struct ForDevice {
+    /// The kernel's name with the device's name: `device:opencl:0`.
+    pub(super) kernel: String,
+    /// The device's name; `None` if any GPU was requested and there is none.
+    pub(super) id: Option<String>,
+    pub(super) rules: PathRules,
+    pub(super) precision: Precision,
+    /// The sampler's index in [`SAMPLERS`].
+    pub(super) sampler: u32,
+}
+
+pub(super) fn missing(kernel: &str) -> Error {
+    let (all, named) = (pathmark_device::list(), kernel.split_once(':').map(|(_, id)| id));
+    let missing = all.iter().filter(|listed| !listed.is_there);
+    let why: Vec<String> = missing.map(|listed| format!("{}: {}", listed.id, listed.about)).collect();
+    let why = if why.is_empty() { String::new() } else { format!(" ({})", why.join("; ")) };
+    let problem = match named {
+        Some(id) => format!("there is no device {id} here{why}"),
+        None => format!("there is no GPU here{why}"),
+    };
+    let ids = all.iter().filter(|listed| listed.is_there).map(|listed| format!("{DEVICE_NAME}:{}", listed.id));
+    let allowed: Vec<String> = ids.collect();
+    InputError::new("kernel", kernel, problem).allowed(allowed.join(", ")).into()
 }
 
 /// The requested device: the named one, or else the first GPU, if there is one.

@@ -1,6 +1,6 @@
 //! A scene as arrays of numbers and words, and the layout of both. The program's names of offsets come from here.
 
-use super::settings::ForDevice;
+use super::plan::ForDevice;
 use crate::lanes::{SpheresF32, surfaces};
 use pathmark_tracer::estimator::{By, LightSampling, camera_share};
 use pathmark_tracer::kernel::RenderOptions;
@@ -99,7 +99,6 @@ pub(super) const KINDS: &[&[&str]] = &[
     &["LIGHT_SPHERE", "LIGHT_CAP", "LIGHT_TRIANGLE"],
 ];
 
-/// The offset of a field.
 fn place(layout: &[(&str, usize)], name: &str) -> usize {
     layout.iter().take_while(|(other, _)| *other != name).map(|(_, length)| length).sum()
 }
@@ -288,8 +287,8 @@ impl Tables {
         }
         let (radius, focus) = view.camera.lens.map_or((0.0, 0.0), |lens| (lens.radius, lens.focus));
         for (name, number) in [
-            ("VIEW_WIDTH", f64::from(options.width())),
-            ("VIEW_HEIGHT", f64::from(options.height())),
+            ("VIEW_WIDTH", f64::from(options.width)),
+            ("VIEW_HEIGHT", f64::from(options.height)),
             ("VIEW_ADVANCE", view.camera.advance),
             ("VIEW_LENS_RADIUS", radius),
             ("VIEW_LENS_FOCUS", focus),
@@ -303,7 +302,7 @@ impl Tables {
             Filter::Center => 2,
         };
         self.set_words("AT_FILTER", &[filter]);
-        self.set_words("AT_WIDTH", &[options.width()]);
+        self.set_words("AT_WIDTH", &[options.width]);
     }
 
     fn set_rules(&mut self, options: &RenderOptions, chosen: &ForDevice) {
@@ -318,7 +317,7 @@ impl Tables {
         self.set_words("AT_CAMERA_RAYS", &[u32::from(chosen.rules.camera_rays)]);
         self.set_numbers("VIEW_CAMERA_SHARE", &[camera_share(chosen.rules.camera_rays)]);
         self.set_words("AT_IS_WEIGHTED", &[u32::from(chosen.rules.nee == Some(LightSampling::Mis))]);
-        let seed = mix(options.seed());
+        let seed = mix(options.seed);
         self.set_words("AT_SEED_KEY", &[seed as u32, (seed >> 32) as u32]);
         self.set_words("AT_SAMPLER", &[chosen.sampler]);
         self.set_words("AT_ORDERS", &ORDERS.map(u32::from));

@@ -104,7 +104,7 @@ fn dot_and<V: Float>(a: Vec3<V>, b: Vec3<V>, number: V) -> V {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::walks::{nearest, side_by_side, walks};
+    use crate::lanes::tests::{nearest, side_by_side, walks};
     use crate::simd::{Mask, Work, levels, on_level};
     use pathmark_tracer::kernel::Start;
     use pathmark_tracer::math::Precision;

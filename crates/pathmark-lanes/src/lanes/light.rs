@@ -1,8 +1,7 @@
 //! Next-event estimation in lanes, with a shadow ray from every lane that a light can reach.
 
-use super::arrival::{Arrival, Vertex, own_root};
 use super::kernel::Lanes;
-use super::packet::{Packet, vector};
+use super::packet::{Arrival, Packet, Vertex, own_root, vector};
 use super::rays::{LanesOf, Rays};
 use super::tables::Kind;
 use super::targets::{Met, Start};

@@ -2,14 +2,12 @@
 //! to vertex and takes the next sample when the path has ended. Sums are taken in the order of the samples (`window`).
 //! So in f64 an image equals the scalar kernel's image, bit for bit, with every instruction set.
 
-mod arrival;
 mod bvh;
 mod filter;
 mod kernel;
 mod light;
 mod nearest;
 mod packet;
-mod plan;
 mod rays;
 mod render;
 mod search;
@@ -17,14 +15,14 @@ mod spheres_f32;
 mod supply;
 mod tables;
 mod targets;
-mod vertex;
 #[cfg(test)]
-mod walks;
+mod tests;
+mod vertex;
 mod window;
 
-pub(crate) use plan::LANES;
+pub(crate) use kernel::LANES;
 #[cfg(feature = "device")]
-pub(crate) use plan::MOST_IN_LANES;
+pub(crate) use kernel::MOST_IN_LANES;
 #[cfg(feature = "device")]
 pub(crate) use spheres_f32::SpheresF32;
 #[cfg(feature = "device")]

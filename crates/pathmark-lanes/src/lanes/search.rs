@@ -12,7 +12,6 @@ use pathmark_tracer::scene::Scene;
 /// primitive again.
 const OF_RAY: usize = 8;
 
-/// The numbers of a ray in a lane.
 fn numbers(scene: &Scene, (Ray { origin, direction }, from): &Start) -> [f64; OF_RAY] {
     let number = from.map_or(-1.0, |from| from.primitive.into());
     let sphere = from.filter(|from| from.inside).and_then(|from| scene.primitives.spheres.get(from.primitive as usize));

@@ -16,7 +16,6 @@ use pathmark_tracer::scene::SUBPIXELS;
 /// Places for waiting rays, twice as many as can wait: a load may start at any ray and always has full length.
 const SIZE: usize = 2 * MOST_LANES;
 
-/// The waiting rays.
 pub(super) struct Supply<V: Float> {
     /// Origins and directions.
     rays: [[V::One; SIZE]; 6],

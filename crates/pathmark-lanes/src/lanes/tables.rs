@@ -25,7 +25,6 @@ impl Kind {
         }
     }
 
-    /// The number in the table.
     pub(super) fn number(self) -> f64 {
         f64::from(self as u8)
     }
@@ -59,7 +58,6 @@ pub(crate) fn surfaces(scene: &Scene, precision: Precision) -> impl Iterator<Ite
 /// Up to this many primitives, each has its own rows for its object, its corners and its light, which takes less time.
 pub(super) const MOST_ROWS: usize = 1 << 14;
 
-/// The tables of a scene.
 pub(super) struct Tables {
     /// A sphere's centre and radius, in single precision its normal and its curvature of [`SphereByCurvature`]; a plane's normal
     /// and 0; a triangle's normal and its largest coordinate, negated.
@@ -78,7 +76,6 @@ pub(super) struct Tables {
     pub(super) interfaces: Table,
     /// Whether any surface is of [`Kind::Other`].
     pub(super) has_others: bool,
-    /// Whether all primitives are spheres.
     pub(super) is_round: bool,
 }
 

@@ -1,9 +1,8 @@
 //! Path vertices in lanes: the steps of [`pathmark_tracer::estimator::Path`], with a mask in place of each branch.
 
-use super::arrival::{Arrival, Vertex, own_root};
 use super::kernel::Lanes;
 use super::light::ArrivedAtLight;
-use super::packet::{Packet, Part, colour, vector};
+use super::packet::{Arrival, Packet, Part, Vertex, colour, own_root, vector};
 use super::rays::LanesOf;
 use super::tables::{GIVES_OFF, Kind};
 use crate::simd::{Apart, Float, MOST_LANES, Mask, Number, Words};

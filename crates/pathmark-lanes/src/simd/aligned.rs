@@ -26,7 +26,6 @@ impl<T: Number> Aligned<T> {
         Self { lines: Vec::with_capacity(count.div_ceil(Self::IN_LINE)), count: 0, numbers: PhantomData }
     }
 
-    /// Appends numbers.
     pub fn extend(&mut self, numbers: impl IntoIterator<Item = T>) {
         for number in numbers {
             let room = self.lines.len() * Self::IN_LINE;

@@ -17,16 +17,6 @@ const REVERSED: [[i8; 16]; 3] = [
     [7, 6, 5, 4, 3, 2, 1, 0, 15, 14, 13, 12, 11, 10, 9, 8],
 ];
 
-/// Whether the processor has instructions that count bits, as all processors with AVX2 have. The compiler does not
-/// infer them from AVX2, and lanes of a mask are counted often.
-#[cfg(target_arch = "x86_64")]
-fn has_bit_counts() -> bool {
-    is_x86_feature_detected!("popcnt")
-        && is_x86_feature_detected!("lzcnt")
-        && is_x86_feature_detected!("bmi1")
-        && is_x86_feature_detected!("bmi2")
-}
-
 #[cfg(target_arch = "x86_64")]
 #[macro_use]
 mod register;
@@ -79,7 +69,6 @@ pub trait Words<M>: Bits {
     fn choose(mask: M, yes: Self, no: Self) -> Self;
     /// Whether words are less than others, for words below 2^63.
     fn less(self, other: Self) -> M;
-    /// Whether words are equal.
     fn equal(self, other: Self) -> M;
 }
 
@@ -207,7 +196,6 @@ pub trait Work {
     /// Whether other work gives the same result, only more slowly. A fallback ([`Level::is_fallback`]) is not compiled
     /// for it.
     const IS_SHORTCUT: bool = false;
-    /// The result.
     type Output;
     /// Runs the work. Everything that it calls must be `#[inline(always)]`; otherwise it is compiled without the
     /// instructions of the set.
@@ -216,7 +204,6 @@ pub trait Work {
 
 /// Work that runs in a separate function with the instructions of the set.
 pub trait Apart {
-    /// The result.
     type Output;
     /// Runs the work; the same holds as for [`Work::run`].
     fn run(self) -> Self::Output;
@@ -229,7 +216,6 @@ pub struct Entry {
     pub name: &'static str,
     pub about: &'static str,
     set: Set,
-    /// Whether this processor has it.
     pub(crate) is_available: fn() -> bool,
 }
 

@@ -9,6 +9,40 @@ macro_rules! op {
     };
 }
 
+/// The entry into code for an instruction set: its registers in both formats, and the features of processors that it
+/// needs. These include the instructions that count bits, which all processors with AVX2 have: the compiler does not infer
+/// them from AVX2, and lanes of a mask are counted often.
+macro_rules! instruction_set {
+    ($Double:ident, $Single:ident; $($feature:tt)*) => {
+        /// Whether this processor has the instructions used here.
+        pub(super) fn is_available() -> bool {
+            $(is_x86_feature_detected!($feature))&&*
+        }
+
+        /// Runs `work` with this instruction set.
+        pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
+            // SAFETY: `on_level` alone comes here, with a level that has been found on this processor.
+            unsafe {
+                match precision {
+                    Precision::F64 => enter::<Pair<$Double>, W>(work),
+                    Precision::F32 => enter::<Pair<$Single>, W>(work),
+                }
+            }
+        }
+
+        #[target_feature($(enable = $feature),*)]
+        fn enter<V: Float, W: Work>(work: W) -> W::Output {
+            work.run::<V>()
+        }
+
+        #[target_feature($(enable = $feature),*)]
+        #[inline(never)]
+        fn apart<W: Apart>(work: W) -> W::Output {
+            work.run()
+        }
+    };
+}
+
 /// Operators of a register that are one intrinsic each.
 macro_rules! operator {
     ($Type:ident: $($Trait:ident $method:ident $intrinsic:ident),*) => {$(
@@ -34,7 +68,7 @@ macro_rules! register {
         abs($abs_of:ident) = $abs:expr;
         copysign($magnitude:ident, $sign:ident) = $copysign:expr;
         select($mask:ident, $yes:ident, $no:ident) = $select:expr;
-        own { $($own:tt)* }
+        own { $(fn $own:ident($($argument:tt)*) $(-> $Result:ty)? $body:block)* }
     ) => {
         $(#[$about])*
         #[derive(Clone, Copy)]
@@ -144,7 +178,10 @@ macro_rules! register {
             fn apart<W: crate::simd::Apart>(work: W) -> W::Output {
                 op!(super::apart(work))
             }
-            $($own)*
+            $(
+                #[inline(always)]
+                fn $own($($argument)*) $(-> $Result)? $body
+            )*
         }
     };
 }

@@ -142,17 +142,14 @@ impl Numbers {
         }
     }
 
-    /// Their format.
     pub fn precision(&self) -> Precision {
         self.precision
     }
 
-    /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The count of the numbers.
     pub fn len(&self) -> usize {
         self.doubles.len() + self.singles.len()
     }

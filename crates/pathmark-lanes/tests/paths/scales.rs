@@ -12,7 +12,7 @@ fn spec(precision: &str, estimator: &str) -> Spec {
 }
 
 fn image(scene: &Arc<Scene>, spec: &Spec, spp: u32) -> TileBuffer {
-    assert_eq!(choose(scene, spec).unwrap().kernel(), "lanes");
+    assert_eq!(choose(scene, spec).unwrap().plan.name(), "lanes");
     let bounds = Bounds { x0: 0, y0: 0, x1: SIZE, y1: SIZE };
     let mut buffer = TileBuffer::new(bounds);
     let counts = build(scene, spec).unwrap().render(&Piece { bounds, samples: 0..spp }, &mut buffer);

@@ -3,7 +3,6 @@
 use super::Compiled;
 use super::path::{Path, Rules};
 
-/// The estimator.
 pub type Bsdf = Path<BsdfRules>;
 
 #[derive(Debug, Clone, Copy)]

@@ -17,7 +17,6 @@ use crate::effect::{EffectSet, Effects};
 use crate::math::{Ray, Rgb};
 use crate::sampling::{SampleKey, Sampler};
 use crate::scene::{AllEffects, Hit, Scene, Tests};
-use std::sync::Arc;
 
 pub use bsdf::Bsdf;
 pub use camera_ray::{camera_ray, camera_share, extra_camera_rays};
@@ -29,64 +28,45 @@ pub use roulette::Roulette;
 pub use smallpt::Smallpt;
 pub use whitted::Whitted;
 
-/// An observer of the events of paths. The empty implementation `()` costs nothing.
-pub trait Probe {
-    /// A ray was traced, with these tests in the hierarchy, if there is one.
-    fn ray(&mut self, _tests: Tests) {}
-    /// A ray hit nothing: in a closed scene, a leak.
-    fn escaped(&mut self) {}
-    /// A path was cut at the bounce limit.
-    fn truncated(&mut self) {}
-    /// A vertex of the path: a ray with this throughput hit a surface after this many bounces.
-    fn vertex(&mut self, _bounces: u16, _ray: &Ray, _hit: &Hit, _throughput: Rgb) {}
-    /// Light that a vertex after this many bounces adds to the sample.
-    fn light(&mut self, _bounces: u16, _contribution: Rgb) {}
-    /// Fog scattered the path at this distance from `ray.origin`, where it has this throughput.
-    fn scattered(&mut self, _bounces: u16, _ray: &Ray, _distance: f64, _throughput: Rgb) {}
-    /// The path splits: its other part is followed when this one has ended.
-    fn split(&mut self, _bounces: u16) {}
-    /// Russian roulette ended a part.
-    fn roulette(&mut self) {}
-    /// A part of a path ended after this many bounces.
-    fn ended(&mut self, _bounces: u16) {}
-    /// The code of an effect ran.
-    fn used(&mut self, _effect: Effects) {}
+/// Declares the trait, and its implementation behind a pointer: a mere observer needs no kernel compiled for it.
+macro_rules! probe {
+    ($($(#[$about:meta])* $event:ident($($argument:ident: $Type:ty),*);)*) => {
+        /// An observer of the events of paths. The empty implementation `()` costs nothing.
+        pub trait Probe {
+            $($(#[$about])* fn $event(&mut self, $(_: $Type),*) {})*
+        }
+
+        impl Probe for () {}
+
+        impl Probe for &mut dyn Probe {
+            $(fn $event(&mut self, $($argument: $Type),*) {
+                (**self).$event($($argument),*);
+            })*
+        }
+    };
 }
 
-impl Probe for () {}
-
-/// A probe behind a pointer: a mere observer needs no kernel compiled for it.
-impl Probe for &mut dyn Probe {
-    fn ray(&mut self, tests: Tests) {
-        (**self).ray(tests);
-    }
-    fn escaped(&mut self) {
-        (**self).escaped();
-    }
-    fn truncated(&mut self) {
-        (**self).truncated();
-    }
-    fn vertex(&mut self, bounces: u16, ray: &Ray, hit: &Hit, throughput: Rgb) {
-        (**self).vertex(bounces, ray, hit, throughput);
-    }
-    fn light(&mut self, bounces: u16, contribution: Rgb) {
-        (**self).light(bounces, contribution);
-    }
-    fn scattered(&mut self, bounces: u16, ray: &Ray, distance: f64, throughput: Rgb) {
-        (**self).scattered(bounces, ray, distance, throughput);
-    }
-    fn split(&mut self, bounces: u16) {
-        (**self).split(bounces);
-    }
-    fn roulette(&mut self) {
-        (**self).roulette();
-    }
-    fn ended(&mut self, bounces: u16) {
-        (**self).ended(bounces);
-    }
-    fn used(&mut self, effect: Effects) {
-        (**self).used(effect);
-    }
+probe! {
+    /// A ray was traced, with these tests in the hierarchy, if there is one.
+    ray(tests: Tests);
+    /// A ray hit nothing: in a closed scene, a leak.
+    escaped();
+    /// A path was cut at the bounce limit.
+    truncated();
+    /// A vertex of the path: a ray with this throughput hit a surface after this many bounces.
+    vertex(bounces: u16, ray: &Ray, hit: &Hit, throughput: Rgb);
+    /// Light that a vertex after this many bounces adds to the sample.
+    light(bounces: u16, contribution: Rgb);
+    /// Fog scattered the path at this distance from `ray.origin`, where it has this throughput.
+    scattered(bounces: u16, ray: &Ray, distance: f64, throughput: Rgb);
+    /// The path splits: its other part is followed when this one has ended.
+    split(bounces: u16);
+    /// Russian roulette ended a part.
+    roulette();
+    /// A part of a path ended after this many bounces.
+    ended(bounces: u16);
+    /// The code of an effect ran.
+    used(effect: Effects);
 }
 
 /// The rules in which the path-following estimators differ.
@@ -188,61 +168,26 @@ impl<E: Estimator> AnyEstimator for E {
     }
 }
 
-impl<E: Estimator> Estimator for Arc<E> {
-    const SPP_MULTIPLE: u32 = E::SPP_MULTIPLE;
-    const AIMS: bool = E::AIMS;
-    const MAX_DEPTH: Option<u16> = E::MAX_DEPTH;
-    const ROULETTE: Option<Roulette> = E::ROULETTE;
-    const IS_ONE_PATH: bool = E::IS_ONE_PATH;
-    const LARGEST_DEPTH: u16 = E::LARGEST_DEPTH;
-    const SHARES_CAMERA_RAYS: bool = E::SHARES_CAMERA_RAYS;
-
-    fn rules(&self) -> Option<PathRules> {
-        (**self).rules()
-    }
-
-    #[inline(always)]
-    fn sample<S: Sampler, X: EffectSet, P: Probe>(
-        &self,
-        scene: &Scene,
-        ray: Ray,
-        key: SampleKey,
-        sampler: &S,
-        probe: &mut P,
-    ) -> Rgb {
-        (**self).sample::<S, X, P>(scene, ray, key, sampler, probe)
-    }
-}
-
 /// A function that is generic over estimators. Through it a name on the command line becomes a type in a kernel.
 pub trait EstimatorVisitor {
-    /// The result.
     type Output;
     /// Called with the named estimator.
     fn visit<E: Estimator + 'static>(self, estimator: E) -> Self::Output;
 }
 
-/// One line of the table of estimators.
+/// One line of the table of estimators: a name, and the constants of [`Estimator`].
 #[derive(Debug, Clone, Copy)]
 pub struct Entry {
     /// Its name on the command line, in CSV and TOML.
     pub name: &'static str,
     pub about: &'static str,
-    /// Samples per pixel must be a multiple of this.
     pub spp_multiple: u32,
-    /// The default bounce limit; `None` if only the throughput ends a path.
     pub max_depth: Option<u16>,
-    /// Whether it uses next-event estimation.
     pub aims: bool,
-    /// The default rule of Russian roulette; `None` if it has none.
     pub roulette: Option<Roulette>,
-    /// Whether a sample is a single path.
     pub is_one_path: bool,
-    /// The largest bounce limit that a caller can request.
     pub largest_depth: u16,
-    /// Whether a sample can have several camera rays.
     pub shares_camera_rays: bool,
-    /// The effect profiles that its scalar kernels are compiled for.
     pub compiled: Compiled,
 }
 

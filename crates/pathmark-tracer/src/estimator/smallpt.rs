@@ -7,7 +7,6 @@
 use super::Compiled;
 use super::path::{Path, Rules};
 
-/// The estimator.
 pub type Smallpt = Path<SmallptRules>;
 
 #[derive(Debug, Clone, Copy)]

@@ -20,7 +20,6 @@ const DEFAULT_DEPTH: u16 = 10;
 /// The largest bounce limit: glass in glass makes up to 2^depth rays per sample.
 const LARGEST_DEPTH: u16 = 32;
 
-/// The estimator.
 #[derive(Debug, Clone, Copy)]
 pub struct Whitted {
     max_depth: u16,

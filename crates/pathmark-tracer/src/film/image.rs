@@ -3,9 +3,7 @@
 /// A picture: linear radiance per colour channel (red, green, blue), row by row from the top.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Image {
-    /// Pixels in a row.
     pub width: u32,
-    /// Number of rows.
     pub height: u32,
     /// `width * height` pixels; pixel (x, y) is at `y * width + x`.
     pub pixels: Vec<[f64; 3]>,

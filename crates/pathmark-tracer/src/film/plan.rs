@@ -16,19 +16,16 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Number of columns.
     #[inline]
     pub const fn width(&self) -> u32 {
         self.x1 - self.x0
     }
 
-    /// Number of rows.
     #[inline]
     pub const fn height(&self) -> u32 {
         self.y1 - self.y0
     }
 
-    /// Number of pixels.
     #[inline]
     pub const fn area(&self) -> usize {
         self.width() as usize * self.height() as usize
@@ -38,7 +35,6 @@ impl Bounds {
 /// One job: a rectangle of pixels and a range of their samples.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Piece {
-    /// The pixels.
     pub bounds: Bounds,
     /// The samples of each pixel.
     pub samples: Range<u32>,
@@ -118,7 +114,6 @@ impl Plan {
         &self.pieces
     }
 
-    /// The number of pieces.
     pub fn len(&self) -> usize {
         self.pieces.len()
     }

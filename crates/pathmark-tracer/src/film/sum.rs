@@ -13,11 +13,9 @@ pub const SAMPLE_BLOCK: u32 = 16;
 /// The sums of a pixel: sum and sum of squares per channel, and the number of samples.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PixelSum {
-    /// Sum of radiances.
     pub sum: [f64; 3],
     /// Sum of squared radiances.
     pub square: [f64; 3],
-    /// Number of samples.
     pub count: u32,
 }
 

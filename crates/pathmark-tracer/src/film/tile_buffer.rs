@@ -24,7 +24,6 @@ impl TileBuffer {
         Ok(Self { bounds, pixels })
     }
 
-    /// The rectangle.
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }

@@ -76,12 +76,10 @@ impl Film {
         Self { width, height, pixels }
     }
 
-    /// Columns.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Rows.
     pub fn height(&self) -> u32 {
         self.height
     }
@@ -93,11 +91,7 @@ impl Film {
 
     /// Copies the finished pixels of a rectangle to their place in the film.
     pub(super) fn place(&mut self, tile: &TileBuffer) {
-        let bounds = tile.bounds();
-        for (y, row) in (bounds.y0..bounds.y1).zip(tile.rows()) {
-            let start = y as usize * self.width as usize + bounds.x0 as usize;
-            self.pixels[start..start + row.len()].copy_from_slice(row);
-        }
+        self.place_all(std::slice::from_ref(tile), 1);
     }
 
     /// Copies the pixels of many disjoint rectangles, with up to `threads` threads: each fills some rows of the film.

@@ -58,7 +58,7 @@ pub fn point<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec3, D::Erro
 /// Reads a direction of any length and normalises it.
 pub fn direction<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec3, D::Error> {
     let d = point(deserializer)?;
-    let largest = d.x.abs().max(d.y.abs()).max(d.z.abs());
+    let largest = d.largest();
     if largest < SMALLEST {
         return Err(D::Error::custom("the zero vector has no direction (allowed: a length of at least 1e-100)"));
     }

@@ -1,10 +1,9 @@
 //! Resolution of a [`Spec`] for a scene: every error in the user's settings is found here.
 
 use super::clamp::{Clamp, Clamped};
-use super::custom::CustomEstimator;
-use super::entry::{KernelEntry, Planned, Request};
+use super::entry::{CustomEstimator, KernelEntry, Planned, Request};
 use super::options::{KernelPlan, RenderOptions, unknown};
-use super::scalar_plan::{INDEPENDENT, ScalarPlan};
+use super::scalar::{INDEPENDENT, ScalarPlan};
 use super::spec::Spec;
 use crate::effect::Effects;
 use crate::error::{InputError, Result};

@@ -4,7 +4,6 @@
 use crate::error::{InputError, Result};
 use std::fmt;
 
-/// The quantity that is clamped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Clamped {
     /// The mean of each subpixel before averaging, as smallpt does.
@@ -16,7 +15,6 @@ pub enum Clamped {
 /// A clamp of radiance in each channel: biased.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clamp {
-    /// The quantity that is clamped.
     pub what: Clamped,
     /// The largest radiance after the clamp, above 0.
     pub limit: f64,

@@ -1,9 +1,9 @@
-//! Entries of the table of kernels.
+//! Entries of the table of kernels, and user-defined estimators, which are in no table.
 
 use super::options::KernelPlan;
 use super::spec::Spec;
 use crate::error::Result;
-use crate::estimator::PathRules;
+use crate::estimator::{AnyEstimator, Entry, Estimator, PathRules};
 use crate::math::Precision;
 use crate::scene::Scene;
 use std::sync::Arc;
@@ -64,4 +64,28 @@ pub enum Planned {
     /// It has no code for this feature; the scalar kernel renders instead, and the column `kernel_fallback` names the
     /// feature.
     Unsupported(&'static str),
+}
+
+/// A named user-defined estimator. It is compiled once, where it is written, with every effect and for any sampler.
+#[derive(Clone)]
+pub struct CustomEstimator {
+    entry: Entry,
+    any: Arc<dyn AnyEstimator>,
+}
+
+impl CustomEstimator {
+    /// Wraps an estimator under a name.
+    pub fn new<E: Estimator + 'static>(name: &'static str, estimator: E) -> Self {
+        Self { entry: Entry::of::<E>(name, E::ABOUT), any: Arc::new(estimator) }
+    }
+
+    /// Its properties, as in the table of estimators.
+    pub fn entry(&self) -> &Entry {
+        &self.entry
+    }
+
+    /// The estimator behind a pointer.
+    pub(super) fn any(&self) -> Arc<dyn AnyEstimator> {
+        Arc::clone(&self.any)
+    }
 }

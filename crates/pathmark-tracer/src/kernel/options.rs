@@ -1,10 +1,9 @@
 //! The settings of a render, resolved for a scene, and the plan of a kernel that is built from them.
 
 use super::clamp::Clamp;
-use super::custom::CustomEstimator;
+use super::entry::CustomEstimator;
 use super::rays::{FirstHits, Start};
 use super::render::Kernel;
-use crate::effect::Effects;
 use crate::error::{InputError, Result};
 use crate::estimator::{AnyEstimator, ESTIMATORS, Entry as EstimatorEntry, Options, Roulette, any_estimator};
 use crate::math::Precision;
@@ -71,52 +70,31 @@ pub trait KernelPlan: Send + Sync {
 /// The resolved settings: none of their names has to be looked up again.
 #[derive(Clone)]
 pub struct RenderOptions {
-    pub(super) width: u32,
-    pub(super) height: u32,
-    pub(super) seed: u64,
-    pub(super) clamp: Option<Clamp>,
+    pub width: u32,
+    pub height: u32,
+    pub seed: u64,
+    pub clamp: Option<Clamp>,
     /// The filter, if it is not the camera's own.
-    pub(super) filter: Option<Filter>,
-    /// Distance below which nothing is hit.
-    pub(super) epsilon: Option<f64>,
-    pub(super) estimator: EstimatorEntry,
+    pub filter: Option<Filter>,
+    /// Distance below which nothing is hit; `None` if the primitive that a ray starts on is known exactly.
+    pub epsilon: Option<f64>,
+    pub estimator: EstimatorEntry,
     /// The estimator, if a program added it.
     pub(super) custom: Option<CustomEstimator>,
     pub(super) options: Options,
-    pub(super) sampler: &'static SamplerEntry,
-    pub(super) profile: &'static ProfileEntry,
-    pub(super) accelerator: &'static Accelerator,
-    pub(super) plan: Arc<dyn KernelPlan>,
+    pub sampler: &'static SamplerEntry,
+    /// The requested effect profile, or the smallest one that covers the scene.
+    pub profile: &'static ProfileEntry,
+    pub accelerator: &'static Accelerator,
+    /// The plan of the kernel that renders.
+    pub plan: Arc<dyn KernelPlan>,
     /// Reason why the scalar kernel replaces the requested one; empty if it does not.
-    pub(super) fallback: &'static str,
+    pub fallback: &'static str,
     /// Factor for all lengths, a power of two.
     pub(super) factor: f64,
 }
 
 impl RenderOptions {
-    /// Columns of the image.
-    pub fn width(&self) -> u32 {
-        self.width
-    }
-
-    /// Rows of the image.
-    pub fn height(&self) -> u32 {
-        self.height
-    }
-
-    /// Seed of the image.
-    pub fn seed(&self) -> u64 {
-        self.seed
-    }
-
-    pub fn estimator(&self) -> &EstimatorEntry {
-        &self.estimator
-    }
-
-    pub fn sampler(&self) -> &'static SamplerEntry {
-        self.sampler
-    }
-
     /// The same options with another seed and without a clamp, for independent samples of the same radiance.
     #[must_use]
     pub fn pilot(self, seed: u64) -> Self {
@@ -125,21 +103,7 @@ impl RenderOptions {
 
     /// The scene's hierarchy; `None` if the accelerator has none.
     pub fn hierarchy(&self, scene: &Scene) -> Option<Hierarchy> {
-        scene.hierarchy_by(self.accelerator())
-    }
-
-    pub fn clamp(&self) -> Option<Clamp> {
-        self.clamp
-    }
-
-    /// The filter, if it is not the camera's own.
-    pub fn filter(&self) -> Option<Filter> {
-        self.filter
-    }
-
-    /// Distance below which nothing is hit; `None` if the primitive that a ray starts on is known exactly.
-    pub fn epsilon(&self) -> Option<f64> {
-        self.epsilon
+        scene.hierarchy_by(self.accelerator.name)
     }
 
     /// The scene's camera set up for the image.
@@ -183,53 +147,10 @@ impl RenderOptions {
         }
     }
 
-    /// Number of devices that render beside the workers.
-    pub fn devices_beside(&self) -> usize {
-        self.plan.devices_beside()
-    }
-
-    /// Whether the kernel needs a GPU and there is none. It cannot be built then.
-    pub fn lacks_device(&self) -> bool {
-        self.plan.lacks_device()
-    }
-
-    /// Name of the kernel that renders. For a device it includes the device's name: `device:cuda:0`.
-    pub fn kernel(&self) -> &str {
-        self.plan.name()
-    }
-
-    /// Instruction set of the lanes; empty without lanes.
-    pub fn simd(&self) -> &'static str {
-        self.plan.simd()
-    }
-
-    /// Floating-point format of the computation.
-    pub fn precision(&self) -> Precision {
-        self.plan.precision()
-    }
-
-    /// Reason why the scalar kernel replaces the requested one; empty if it does not.
-    pub fn fallback(&self) -> &'static str {
-        self.fallback
-    }
-
-    /// Name of the effect profile: the requested one, or the smallest one that covers the scene.
-    pub fn profile(&self) -> &'static str {
-        self.profile.name
-    }
-
-    pub fn profile_effects(&self) -> Effects {
-        self.profile.effects
-    }
-
     /// The effects that the kernel was compiled for: the name of a profile, or `run-time` for lanes that check at run
     /// time. A profile of lanes does not include primitives.
     pub fn effects(&self) -> &'static str {
         self.plan.effects().unwrap_or(self.profile.name)
-    }
-
-    pub fn accelerator(&self) -> &'static str {
-        self.accelerator.name
     }
 
     /// Whether rays are tested against boxes before primitives.
@@ -245,7 +166,7 @@ impl RenderOptions {
             Arc::make_mut(&mut prepared).hierarchy = hierarchy;
         }
         if self.estimator.aims {
-            Arc::make_mut(&mut prepared).add_lights(&self.view(scene));
+            Arc::make_mut(&mut prepared).lights = Some(scene.lights_for(&self.view(scene)));
         }
         if self.epsilon.is_some() {
             Arc::make_mut(&mut prepared).epsilon = self.epsilon;

@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 pub struct Counts {
     /// Samples.
     pub paths: u64,
-    /// Rays traced.
     pub rays: u64,
     /// Samples that were NaN, infinite or negative; they contribute nothing.
     pub invalid: u64,

@@ -6,11 +6,8 @@ use serde::{Deserialize, Serialize};
 /// Specification of a kernel: the *what* of a render.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Spec {
-    /// Columns of the image.
     pub width: u32,
-    /// Rows of the image.
     pub height: u32,
-    /// Seed of the image.
     pub seed: u64,
     pub estimator: String,
     pub sampler: String,

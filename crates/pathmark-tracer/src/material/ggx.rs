@@ -21,7 +21,6 @@ pub struct Ggx {
 /// of small α.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Facets {
-    /// Smooth.
     Mirror,
     /// Small mirrors that face many directions.
     Rough(Ggx),

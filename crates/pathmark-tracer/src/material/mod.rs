@@ -36,7 +36,6 @@ pub struct BsdfSample {
     pub wi: Vec3,
     /// BSDF times |cos| divided by the density: the factor for the throughput.
     pub weight: Rgb,
-    /// The density of the direction.
     pub density: Density,
 }
 
@@ -94,7 +93,6 @@ macro_rules! materials {
         enum Index { $($Type),* }
 
         $(impl $Type {
-            /// The bit of this effect.
             pub const EFFECT: Effects = Effects::material(Index::$Type as u32);
         })*
 
@@ -119,7 +117,6 @@ macro_rules! materials {
                 match self { $(Self::$Type(_) => $Type::IS_RECIPROCAL),* }
             }
 
-            /// Returns the effect of the material.
             pub const fn effect(&self) -> Effects {
                 match self { $(Self::$Type(_) => $Type::EFFECT),* }
             }

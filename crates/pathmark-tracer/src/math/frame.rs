@@ -29,13 +29,11 @@ impl<T: Real> Frame<T> {
         }
     }
 
-    /// World to local.
     #[inline(always)]
     pub fn to_local(&self, v: Vec3<T>) -> Vec3<T> {
         Vec3::new(dot(v, self.s), dot(v, self.t), dot(v, self.n))
     }
 
-    /// Local to world.
     #[inline(always)]
     pub fn to_world(&self, v: Vec3<T>) -> Vec3<T> {
         self.n.times_plus(v.z, self.t.times_plus(v.y, self.s * v.x))

@@ -5,9 +5,6 @@
 mod bits;
 mod frame;
 mod optics;
-mod plane;
-mod precision;
-mod ray;
 mod real;
 mod rgb;
 mod sphere;
@@ -18,15 +15,12 @@ mod vector;
 pub use bits::{Bits, single_unit, unit};
 pub use frame::Frame;
 pub use optics::{fresnel_dielectric, fresnel_schlick, reflect, refract};
-pub use plane::plane_root;
-pub use precision::Precision;
-pub use ray::Ray;
-pub use real::Real;
+pub use real::{Precision, Real};
 pub use rgb::Rgb;
 pub use sphere::{
     SphereByCurvature, curved_normal, curved_quadratic, first_root, first_root_curved, last_root_curved, line_meets,
     other_root, roots,
 };
-pub use triangle::{Crossing, Shear, sheared, triangle_root};
+pub use triangle::{Crossing, Shear, plane_root, sheared, triangle_root};
 pub use trig::{COS, SIN, sin_cos_turns};
-pub use vector::{Vec3, dot};
+pub use vector::{Ray, Vec3, dot};

@@ -12,11 +12,8 @@ use std::ops::{Add, AddAssign, Mul};
     bound(serialize = "T: Clone + Serialize", deserialize = "T: Deserialize<'de>")
 )]
 pub struct Rgb<T = f64> {
-    /// Red.
     pub r: T,
-    /// Green.
     pub g: T,
-    /// Blue.
     pub b: T,
 }
 
@@ -58,7 +55,6 @@ impl Rgb {
         Self { r: of(self.r), g: of(self.g), b: of(self.b) }
     }
 
-    /// The channels in order.
     #[inline(always)]
     pub fn channels(self) -> [f64; 3] {
         [self.r, self.g, self.b]

@@ -1,4 +1,4 @@
-//! Ray against triangle.
+//! Ray against triangle, and against plane.
 //!
 //! Watertight after Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013: corners are
 //! sheared so that the ray is the z axis, and the signs of three edge functions decide. Two triangles that share an
@@ -6,7 +6,7 @@
 //! meets both. The paper's second test in a higher precision is left out: a point that is on an edge to the last digit
 //! counts as inside.
 
-use super::{Real, Vec3};
+use super::{Real, Vec3, dot};
 
 /// The ray's own axes: z is the direction's longest component, and the shear maps the direction onto it.
 #[derive(Debug, Clone, Copy)]
@@ -110,4 +110,14 @@ impl<T: Real> Crossing<T> {
 #[inline(always)]
 pub fn triangle_root<T: Real>(a: [T; 3], b: [T; 3], c: [T; 3]) -> T {
     Crossing::of([a, b, c]).root()
+}
+
+/// Distance at which a ray in that direction meets a plane with that normal; NaN or not above zero if it does not.
+/// `to_plane` leads from the ray's origin to any point of the plane.
+///
+/// Along the plane the quotient is infinite or NaN, and neither is a hit. There is no threshold for other angles.
+#[inline(always)]
+pub fn plane_root<T: Real>(to_plane: Vec3<T>, direction: Vec3<T>, normal: Vec3<T>) -> T {
+    let t = dot(to_plane, normal) / dot(direction, normal);
+    T::select(t.lt(T::splat(f64::INFINITY)), t, T::splat(f64::NAN))
 }

@@ -1,4 +1,4 @@
-//! Three numbers: a point, a direction or a normal.
+//! Three numbers: a point, a direction or a normal; and half lines.
 
 use super::Real;
 use std::ops::{Add, Mul, Neg, Sub};
@@ -6,11 +6,8 @@ use std::ops::{Add, Mul, Neg, Sub};
 /// A vector with its components in scene units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vec3<T = f64> {
-    /// First component.
     pub x: T,
-    /// Second component.
     pub y: T,
-    /// Third component.
     pub z: T,
 }
 
@@ -67,6 +64,14 @@ impl<T: Real> Vec3<T> {
     }
 }
 
+impl Vec3 {
+    /// The largest absolute component.
+    #[inline(always)]
+    pub fn largest(self) -> f64 {
+        self.x.abs().max(self.y.abs()).max(self.z.abs())
+    }
+}
+
 impl From<[f64; 3]> for Vec3 {
     fn from([x, y, z]: [f64; 3]) -> Self {
         Self { x, y, z }
@@ -102,5 +107,20 @@ impl<T: Real> Neg for Vec3<T> {
     #[inline(always)]
     fn neg(self) -> Self {
         Self::new(-self.x, -self.y, -self.z)
+    }
+}
+
+/// Origin and direction. The integrator keeps directions at length 1; the intersection formulas that take a squared length do not need it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ray<T = f64> {
+    pub origin: Vec3<T>,
+    pub direction: Vec3<T>,
+}
+
+impl<T: Real> Ray<T> {
+    /// The point at distance `t`, in lengths of the direction.
+    #[inline(always)]
+    pub fn at(&self, t: T) -> Vec3<T> {
+        self.direction.times_plus(t, self.origin)
     }
 }

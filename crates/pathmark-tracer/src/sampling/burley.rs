@@ -32,8 +32,8 @@ pub(super) fn shuffle<B: Bits>(digits: B, seed: B) -> B {
 #[cfg(test)]
 mod tests {
     use super::super::independent::mix;
-    use super::super::owen::flips;
     use super::*;
+    use crate::sampling::tests::flips_are_independent;
 
     /// Checks the constants and their order against Vegdahl's own form of the hash, on 32-bit words.
     #[test]
@@ -53,8 +53,8 @@ mod tests {
 
     #[test]
     fn scrambling_flips_digits_independently() {
-        flips::are_independent(|digits, key| scramble(digits, mix(key)));
-        flips::are_independent(|digits, key| scramble(digits, mix(key).down::<32>()));
+        flips_are_independent(|digits, key| scramble(digits, mix(key)));
+        flips_are_independent(|digits, key| scramble(digits, mix(key).down::<32>()));
     }
 
     /// A digit's flip depends on the digits before it and on none after it, so a scrambled net is a net.

@@ -10,7 +10,6 @@ use rand::Rng;
 use rand_pcg::Pcg32;
 use std::sync::{Mutex, PoisonError};
 
-/// The sampler.
 #[derive(Debug)]
 pub struct Locked(Mutex<Pcg32>);
 

@@ -20,6 +20,8 @@ mod same_seed;
 pub mod sobol;
 #[doc(hidden)]
 mod stratified;
+#[cfg(test)]
+mod tests;
 mod unpadded;
 mod warp;
 
@@ -59,7 +61,6 @@ pub enum Purpose {
     Film = 0,
     /// The scattered direction at a surface, and the choice between its lobes.
     Bsdf = 1,
-    /// Russian roulette.
     Roulette = 2,
     /// The position on the camera's lens.
     Lens = 3,
@@ -71,7 +72,6 @@ pub enum Purpose {
 }
 
 impl Purpose {
-    /// All purposes.
     pub const ALL: [Self; 7] =
         [Self::Film, Self::Bsdf, Self::Roulette, Self::Lens, Self::Medium, Self::Light, Self::LightChoice];
 }

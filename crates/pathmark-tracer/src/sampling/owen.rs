@@ -24,49 +24,13 @@ pub(super) fn shuffle<B: Bits>(index: B, keys: [B; 2]) -> B {
 }
 
 #[cfg(test)]
-pub(super) mod flips {
-    /// Checks that `scramble`, like Owen's, flips each digit independently for every combination of the digits before
-    /// it. Over a million keys the 63 flips of six digits must be even and pairwise uncorrelated. (Laine and Karras's
-    /// own steps fail by a hundred standard deviations.)
-    pub(in crate::sampling) fn are_independent(scramble: impl Fn(u64, u64) -> u64) {
-        const LEVELS: u32 = 6;
-        const NODES: usize = (1 << LEVELS) - 1;
-        const KEYS: u64 = 1 << 20;
-        let (mut single, mut double) = ([0_i64; NODES], vec![0_i64; NODES * NODES]);
-        for key in 0..KEYS {
-            let mut flips = [0_i64; NODES];
-            for level in 0..LEVELS {
-                for before in 0..1_u64 << level {
-                    let flip = scramble(before, key) >> level & 1;
-                    flips[(1 << level) - 1 + before as usize] = 2 * flip as i64 - 1;
-                }
-            }
-            for (a, flip) in flips.iter().enumerate() {
-                single[a] += flip;
-                for (sum, other) in double[a * NODES..].iter_mut().zip(&flips[..a]) {
-                    *sum += flip * other;
-                }
-            }
-        }
-        let pairs = (0..NODES).flat_map(|a| (0..a).map(move |b| a * NODES + b)).map(|index| double[index]);
-        let sums: Vec<i64> = single.into_iter().chain(pairs).collect();
-        // Two-sided, level 1e-3 for all 2016 sums together.
-        let limit = 5.03;
-        for (index, sum) in sums.iter().enumerate() {
-            let z = *sum as f64 / (KEYS as f64).sqrt();
-            assert!(z.abs() < limit, "sum {index} is {z} standard deviations from 0");
-        }
-    }
-}
-
-#[cfg(test)]
 mod tests {
     use super::super::independent::mix;
     use super::*;
 
     #[test]
     fn scrambling_flips_digits_independently() {
-        super::flips::are_independent(|digits, key| scramble(digits, [mix(2 * key), mix(2 * key + 1)]));
+        crate::sampling::tests::flips_are_independent(|digits, key| scramble(digits, [mix(2 * key), mix(2 * key + 1)]));
     }
 
     /// A digit's flip depends on the digits before it and on none after it, so a scrambled net is a net.

@@ -11,7 +11,6 @@ use rand_pcg::Pcg32;
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The sampler.
 #[derive(Debug)]
 pub struct PerThread {
     seed: u64,

@@ -2,7 +2,6 @@
 
 use crate::math::Rgb;
 
-/// Intervals of the table.
 const INTERVALS: u32 = 128;
 
 /// The radiance that a surface emits, by the angle to its normal, the same on both sides. Entry k of n is for the

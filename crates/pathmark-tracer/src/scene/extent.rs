@@ -30,7 +30,7 @@ const FINEST: f64 = 1.0 / (1 << 17) as f64;
 /// The length of a vector. If squares underflow, it is the largest coordinate.
 pub(super) fn length(v: Vec3) -> f64 {
     let square = dot(v, v);
-    if square.is_normal() { square.sqrt() } else { v.x.abs().max(v.y.abs()).max(v.z.abs()) }
+    if square.is_normal() { square.sqrt() } else { v.largest() }
 }
 
 impl Sphere {

@@ -15,7 +15,6 @@ use crate::input::{positive, radiance};
 use crate::math::Rgb;
 use serde::Deserialize;
 
-/// The medium.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fog {

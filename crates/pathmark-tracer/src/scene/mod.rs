@@ -4,7 +4,6 @@ mod angular_emission;
 mod camera;
 mod coincident;
 mod extent;
-mod feature;
 mod fog;
 mod generator;
 mod hierarchy;
@@ -15,29 +14,25 @@ mod profile;
 mod reader;
 mod remark;
 mod shape;
-mod source;
 
 pub use angular_emission::AngularEmission;
 pub use camera::{CAMERA_EXAMPLES, CAMERAS, Camera, FILTERS, Filter, FilterEntry, Lens, SUBPIXELS, View};
-pub use feature::{
-    ANGULAR_EMISSION, BACKGROUND, COMPOUND, EPSILON, FEATURES, FOG, HIERARCHY, LENS, POINT_LIGHT, REACH,
-};
 pub use fog::Fog;
 pub use generator::GENERATORS;
 pub use hierarchy::{
     ACCELERATORS, Bounds, DEEPEST, Entry as Accelerator, Faces, Hierarchy, Node, Scan, Slabs, Tests, accelerator,
     padding,
 };
-pub use library::{Library, load};
+pub use library::{CustomScene, Library, SCENES, load};
 pub use light::{Aim, Lights, one_minus_cos};
 pub use light::{AnyTarget, NO_LIGHT, TriangleTarget, per_steradian, point_of, towards_cap};
 pub use point_light::PointLight;
 pub use profile::{
-    AllEffects, DiffuseOnly, FogEffects, LensEffects, PROFILES, ProfileEntry, ProfileVisitor, SceneryEffects,
-    SmallptEffects, SurfaceEffects, effect_names, with_profile,
+    ANGULAR_EMISSION, AllEffects, BACKGROUND, COMPOUND, DiffuseOnly, EPSILON, FEATURES, FOG, FogEffects, HIERARCHY,
+    LENS, LensEffects, POINT_LIGHT, PROFILES, ProfileEntry, ProfileVisitor, REACH, SceneryEffects, SmallptEffects,
+    SurfaceEffects, effect_names, with_profile,
 };
 pub use shape::{Nearest, PRIMITIVES, Plane, Primitive, Primitives, SHAPES, Sphere, Triangle, nearness};
-pub use source::{CustomScene, SCENES};
 
 use crate::effect::{EffectSet, Effects};
 use crate::material::Material;
@@ -49,7 +44,6 @@ use std::path::PathBuf;
 pub struct Object {
     /// Its name in the scene file.
     pub name: String,
-    /// The material of its surface.
     pub material: Material,
     /// The radiance that it emits in every direction, on both sides.
     pub emission: Rgb,
@@ -84,7 +78,6 @@ pub struct Hit {
     pub primitive: u32,
     /// Index of the object that it belongs to.
     pub object: u32,
-    /// The intersection point.
     pub point: Vec3,
     /// The outward unit normal.
     pub normal: Vec3,
@@ -149,7 +142,6 @@ impl Scene {
         self.default_estimator.as_deref().unwrap_or(USUAL_ESTIMATOR)
     }
 
-    /// Returns the effects that it uses.
     pub fn effects(&self) -> Effects {
         let called = |is_there: bool, effect: Effects| if is_there { effect } else { Effects::NONE };
         let materials = self.objects.iter().fold(Effects::NONE, |all, object| all.and(object.material.effect()));
@@ -239,7 +231,6 @@ impl Scene {
         self.primitives.surely_nearest(hierarchy, ray, from, (f64::INFINITY, digits), tests)
     }
 
-    /// Whether all its primitives are spheres.
     pub fn is_round(&self) -> bool {
         self.primitives.spheres.len() == self.owners.len()
     }
@@ -318,14 +309,7 @@ impl Scene {
     /// Returns the scene with its lights for next-event estimation, as paths from that view can reach them.
     #[must_use]
     pub fn lit(&self, view: &View) -> Self {
-        let mut lit = self.clone();
-        lit.add_lights(view);
-        lit
-    }
-
-    /// Adds the lights for next-event estimation, as paths from that view can reach them.
-    pub fn add_lights(&mut self, view: &View) {
-        self.lights = Some(self.lights_for(view));
+        Self { lights: Some(self.lights_for(view)), ..self.clone() }
     }
 
     /// Returns the lights for next-event estimation, as paths from that view can reach them.

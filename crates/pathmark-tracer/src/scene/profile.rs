@@ -1,16 +1,16 @@
-//! Effect profiles: the sets of effects that kernels are compiled for.
+//! Features, which are effects of a scene besides materials and primitives; and effect profiles: the sets of effects that
+//! kernels are compiled for.
 //!
 //! A scene runs on the smallest profile that covers its effects, so an unused effect costs nothing. `--effects PROFILE`
-//! forces a larger profile, to measure that cost.
+//! forces a larger profile, to measure that cost. To add a feature, give it a line in `features!` and let
+//! `Scene::effects` report its use.
 
-use super::feature::{BACKGROUND, COMPOUND, FEATURES, FOG, HIERARCHY, LENS, POINT_LIGHT};
 use super::shape::{PRIMITIVES, Plane, Sphere};
-use crate::effect::{EffectSet, Effects, all};
+use crate::effect::{EffectSet, Effects, Entry, all};
 use crate::material::{Dielectric, Diffuse, MATERIALS, Mirror, Polished};
 
 /// A function over profiles: it turns a profile's name into a type parameter of a kernel.
 pub trait ProfileVisitor {
-    /// The result.
     type Output;
     /// Runs with the profile that was named.
     fn visit<X: EffectSet>(self) -> Self::Output;
@@ -67,4 +67,29 @@ pub fn effect_names(effects: Effects) -> String {
     let tables = PRIMITIVES.iter().chain(MATERIALS).chain(FEATURES);
     let names: Vec<&str> = tables.filter(|entry| effects.cover(entry.effect)).map(|entry| entry.name).collect();
     names.join("+")
+}
+
+macro_rules! features {
+    ($($index:ident, $NAME:ident, $name:literal, $about:literal;)*) => {
+        #[derive(Clone, Copy)]
+        enum Index { $($index),* }
+
+        $(#[doc = concat!("The bit of: ", $about, ".")]
+        pub const $NAME: Effects = Effects::feature(Index::$index as u32);)*
+
+        /// The features, in the order in which they are listed.
+        pub const FEATURES: &[Entry] = &[$(Entry { name: $name, about: $about, effect: $NAME }),*];
+    };
+}
+
+features! {
+    Hierarchy, HIERARCHY, "hierarchy", "a bounding volume hierarchy over the primitives";
+    Background, BACKGROUND, "background", "radiance of rays that hit nothing";
+    PointLight, POINT_LIGHT, "point-light", "point lights with inverse-square falloff";
+    Lens, LENS, "lens", "a thin lens";
+    Fog, FOG, "fog", "a homogeneous medium that absorbs, scatters and emits";
+    Compound, COMPOUND, "compound", "objects that are made of several primitives";
+    AngularEmission, ANGULAR_EMISSION, "angular-emission", "emission that depends on the angle to the normal";
+    Epsilon, EPSILON, "epsilon", "a minimum distance of hits";
+    Reach, REACH, "reach", "point lights with a limited reach";
 }

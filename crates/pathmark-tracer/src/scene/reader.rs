@@ -24,8 +24,8 @@
 //! has, and `without` lists objects to leave out.
 
 use super::generator::{Generator, Made};
+use super::library::{CustomScene, Files, Folder, Source, source};
 use super::shape::{AnyShape, Primitives};
-use super::source::{CustomScene, Files, Folder, Source, source};
 use super::{Camera, Fog, Object, PointLight, Scene, USUAL_ESTIMATOR};
 use crate::digest::Fingerprint;
 use crate::error::{Error, InputError, Result};
@@ -80,6 +80,7 @@ struct Part {
 }
 
 /// A scene while it is assembled from its bases.
+#[derive(Default)]
 struct Draft {
     estimator: Option<String>,
     background: Option<Rgb>,
@@ -219,17 +220,7 @@ fn draft(source: &Rc<Source>, depth: usize, own: &[CustomScene]) -> Result<(Draf
         })?;
     }
     let mut draft = match &file.base {
-        None => Draft {
-            estimator: None,
-            background: None,
-            camera: None,
-            fog: None,
-            point_lights: Vec::new(),
-            generator: None,
-            parts: Vec::new(),
-            hash: Fingerprint::default(),
-            files: Vec::new(),
-        },
+        None => Draft::default(),
         Some(base) => base_of(source, base, depth, own)?,
     };
     draft.hash.update(source.text.as_bytes());

@@ -54,7 +54,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
 
     let (given, counts) = kernel::one_sample(&*choice.build(scene)?, [x, y], sample);
     let is_valid = counts.invalid == 0;
-    let precision = choice.precision();
+    let precision = choice.plan.precision();
     // Lanes keep no log, and only lanes have other precisions.
     let path = if precision == Precision::F64 { Some(path(scene, choice, (x, y, sample), given)?) } else { None };
     let radiance = path.as_ref().map_or(given, |(_, radiance)| radiance.channels());

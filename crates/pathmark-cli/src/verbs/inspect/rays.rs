@@ -78,11 +78,11 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     let FoundRays { met, distance, counts } = found;
     let each = |count: u64| count as f64 / (search.count() as f64).max(1.0);
     let (boxes, primitives) = (each(counts.box_tests), each(counts.primitive_tests));
-    let (kernel, simd, precision) = (choice.kernel(), choice.simd(), choice.precision().name());
+    let (kernel, simd, precision) = (choice.plan.name(), choice.plan.simd(), choice.plan.precision().name());
     if arguments.json {
         return print_json(&json!({
             "scene": scene.name, "primitives": scene.owners.len(), "rays": search.count(), "met": met, "distance": number(distance),
-            "kernel": kernel, "simd": simd, "precision": precision, "accelerator": choice.accelerator(),
+            "kernel": kernel, "simd": simd, "precision": precision, "accelerator": choice.accelerator.name,
             "box_tests": counts.box_tests, "primitive_tests": counts.primitive_tests,
             "rays_per_s": rates, "median_rays_per_s": number(rate),
         }));
@@ -99,9 +99,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
         scene.name,
         scene.owners.len(),
         search.count(),
-        choice.estimator().name,
+        choice.estimator.name,
         if simd.is_empty() { "" } else { " " },
-        choice.accelerator(),
+        choice.accelerator.name,
         short(1e-6 * rate, 3),
         rates.len(),
         short(distance / (met as f64).max(1.0), 6),

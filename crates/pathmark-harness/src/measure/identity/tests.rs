@@ -1,6 +1,6 @@
 use super::*;
 use crate::estimator::Roulette;
-use crate::measure::{Measured, Record, SETTINGS, image_columns, schedule_columns};
+use crate::measure::{Record, SETTINGS, image_columns, schedule_columns};
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 
@@ -110,7 +110,7 @@ fn each_axis_gives_another_image_or_another_schedule_as_the_table_says() {
 fn requested_and_measured_cells_have_the_same_keys() {
     for change in [|_: &mut Settings| (), |s: &mut Settings| s.spec.sampler = "stratified".to_string()] {
         let setup = setup(change);
-        let row = Record::new(&setup, &setup.run(None).unwrap(), Measured::default());
+        let row = Record::new(&setup, &setup.run(None).unwrap());
         assert_eq!((row.image_key(), row.schedule_key()), (setup.image_key(), setup.schedule_key()));
     }
 }

@@ -27,17 +27,13 @@ pub(super) trait Output: Send + Sync {
     fn films(self: Box<Self>) -> Vec<Film>;
 }
 
-/// The data from which an output is made.
 pub(super) struct Delivery {
-    /// The pieces.
     pub(super) plan: Arc<Plan>,
     /// Empty films for them, made before the run, so that a refused allocation shows before the work.
     pub(super) films: Sections,
-    /// Threads that may merge them.
     pub(super) threads: usize,
 }
 
-/// An entry of the table of outputs.
 pub struct Entry {
     /// Its name on the command line, in CSV and TOML.
     pub name: &'static str,
@@ -59,9 +55,4 @@ outputs! {
     locked,
     row_progress,
     shared_sum,
-}
-
-/// The output of that name.
-pub(super) fn find(name: &str) -> Option<&'static Entry> {
-    OUTPUTS.iter().find(|entry| entry.name == name)
 }

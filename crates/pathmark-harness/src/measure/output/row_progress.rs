@@ -17,7 +17,6 @@ pub(super) const ENTRY: Entry = Entry {
 
 struct RowProgress {
     slots: Slots,
-    /// Rows of pieces that are done.
     rows: Mutex<u64>,
 }
 

@@ -26,7 +26,6 @@ impl Slots {
         Ok(Self { delivery, cells })
     }
 
-    /// Lets `work` fill the buffer of job `index`.
     pub(super) fn fill(&self, index: usize, work: impl FnOnce(&mut TileBuffer) -> Counts) -> Counts {
         let bounds = self.delivery.plan.pieces()[index].bounds;
         let mut tile = self.cells[index].take().unwrap_or_else(|| Box::new(TileBuffer::new(bounds)));

@@ -75,7 +75,6 @@ impl<'a> Crew<'a> {
         self.free.pop().map(|Reverse((time, worker))| (worker, time.0))
     }
 
-    /// Registers that `worker` is free at `time_s`.
     pub(super) fn ask_again(&mut self, worker: usize, time_s: f64) {
         self.free.push(Reverse((Time(time_s), worker)));
     }
@@ -101,7 +100,6 @@ impl<'a> Crew<'a> {
         now_s
     }
 
-    /// The durations of jobs that are done.
     pub(super) fn seen(&self, jobs: Range<usize>) -> Seen {
         self.spans[jobs].iter().map(JobSpan::duration_s).collect()
     }

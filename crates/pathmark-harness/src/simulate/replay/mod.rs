@@ -1,31 +1,27 @@
 //! Replays: jobs of known costs on virtual workers, from event to event.
 //!
-//! Each family of disciplines has a file. All of them are exact in the model: a free worker asks at once, hand-outs
+//! All disciplines are exact in the model: a free worker asks at once, hand-outs
 //! take the times in [`Overhead`], and ties go to the worker with the lower number. Only noise and the choice of random
 //! victims are random, with seeds. A replay costs O(log P) per job, apart from the interruptions of noise.
 
 mod all_at_once;
-mod chunks;
 mod crew;
 mod halving;
-mod learned;
 mod stealing;
 
 #[cfg(test)]
-mod closed_forms;
+mod closed_form_tests;
 #[cfg(test)]
-mod guarantees;
+mod guarantee_tests;
 
 use super::hardware::Hardware;
 use super::overhead::Overhead;
 use crate::measure::Trace;
-use crate::strategy::Discipline;
+use crate::strategy::{ChunkRule, Deal, Discipline, Handout, LearnedRule, Ledger};
 use crew::Crew;
 
-/// The result of a replay.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Replay {
-    /// Seconds from handing over the jobs until all are done.
     pub makespan_s: f64,
     /// Which worker ran which job when, in the form of a measured run. Under [`Discipline::AllAtOnce`] a worker is a
     /// thread, and its span contains the time in which other threads had the processor.
@@ -53,17 +49,52 @@ pub fn replay(
     match discipline {
         Discipline::InOrder | Discipline::AllAtOnce => dealt(&mut crew, |_, _, jobs| (0..jobs).step_by(1)),
         Discipline::Dealt(deal) => dealt(&mut crew, deal),
-        Discipline::Chunks(rule) => chunks::run(&mut crew, rule),
-        Discipline::Learned(rule) => learned::run(&mut crew, rule),
+        Discipline::Chunks(rule) => chunks(&mut crew, rule),
+        Discipline::Learned(rule) => learned(&mut crew, rule),
         Discipline::Stealing(stealing) => stealing::run(&mut crew, stealing),
         Discipline::Halving => halving::run(&mut crew),
     }
     crew.into_replay()
 }
 
-fn dealt(crew: &mut Crew<'_>, deal: crate::strategy::Deal) {
+fn dealt(crew: &mut Crew<'_>, deal: Deal) {
     let (workers, jobs) = (crew.workers(), crew.jobs());
     while let Some((worker, now_s)) = crew.next_free() {
         crew.work(worker, deal(worker, workers, jobs), now_s);
+    }
+}
+
+/// Self-scheduling: a free worker takes the next chunk from the shared place.
+fn chunks(crew: &mut Crew<'_>, rule: ChunkRule) {
+    let (jobs, workers) = (crew.jobs(), crew.workers());
+    let mut handout = Handout { jobs, workers, start: 0, chunks: 0, parameter: rule.parameter };
+    while let Some((worker, now_s)) = crew.next_free() {
+        match rule.next(&mut handout) {
+            Some(chunk) => {
+                let got_s = crew.through_shared_place(worker, 1, now_s);
+                let free_s = crew.work(worker, chunk, got_s);
+                crew.ask_again(worker, free_s);
+            }
+            None => _ = crew.work(worker, [], now_s),
+        }
+    }
+}
+
+/// Self-scheduling by measured speed: a free worker reports how long its last jobs took, which decides the size of its
+/// next chunk.
+fn learned(crew: &mut Crew<'_>, rule: LearnedRule) {
+    let mut ledger = Ledger::new(crew.jobs(), crew.workers(), rule.weights);
+    let mut last = vec![0..0; crew.workers()];
+    while let Some((worker, now_s)) = crew.next_free() {
+        ledger.note(worker, crew.seen(last[worker].clone()));
+        match rule.next(&mut ledger, worker) {
+            Some(chunk) => {
+                let got_s = crew.through_shared_place(worker, 1, now_s);
+                let free_s = crew.work(worker, chunk.clone(), got_s);
+                last[worker] = chunk;
+                crew.ask_again(worker, free_s);
+            }
+            None => _ = crew.work(worker, [], now_s),
+        }
     }
 }

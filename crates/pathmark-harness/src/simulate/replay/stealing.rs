@@ -41,7 +41,6 @@ struct Queues {
     stealing: Stealing,
     shared: Range<usize>,
     own: Vec<Range<usize>>,
-    /// The workers whose queue is not empty.
     filled: BTreeSet<usize>,
     /// The same workers, the longest queue last; of equal lengths, the first worker's is last. Kept only for
     /// `Victim::Richest`.

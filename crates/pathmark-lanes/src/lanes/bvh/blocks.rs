@@ -216,7 +216,6 @@ impl Blocks {
         !self.spheres.is_empty()
     }
 
-    /// The numbers of the primitives in a leaf.
     pub(super) fn numbers(&self, leaf: &Leaf) -> impl Iterator<Item = u32> {
         let [of_spheres, of_triangles] = self.widths;
         let places = |[first, end]: [u32; 2], of_one: usize, width: usize| {

@@ -9,11 +9,9 @@ use pathmark_tracer::scene::{Bounds, Hierarchy, Node};
 pub(super) struct Child {
     /// Its bounding box, padding included.
     pub(super) bounds: Bounds,
-    /// The contents of its box.
     pub(super) content: Content,
 }
 
-/// The contents of a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Content {
     Node(u32),

@@ -91,9 +91,8 @@ impl Waiting {
 
 #[cfg(test)]
 mod tests {
-    use super::super::wide::tests::twice;
     use super::*;
-    use crate::lanes::walks::walks;
+    use crate::lanes::tests::{twice, walks};
     use crate::simd::levels;
     use pathmark_tracer::math::Precision;
     use pathmark_tracer::scene::{SCENES, load};

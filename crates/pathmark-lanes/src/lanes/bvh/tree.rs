@@ -263,7 +263,6 @@ impl Stacks {
 pub(super) const PLACES: usize = MOST_WAITING + 2 * MOST_LANES;
 
 impl Stack {
-    /// An empty stack.
     pub(in crate::lanes) const EMPTY: Self =
         Self { next: NOTHING, children: [0.0; PLACES], distances: [0.0; PLACES], count: 0, near: 0 };
 

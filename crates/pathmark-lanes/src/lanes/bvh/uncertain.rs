@@ -73,7 +73,7 @@ fn is_beside(x: f64, [a, b, c]: [f64; 3], slack: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::walks::{nearest, side_by_side, walks};
+    use crate::lanes::tests::{nearest, side_by_side, walks};
     use crate::simd::{Level, Precision, Work, levels, on_level};
     use pathmark_tracer::kernel::Start;
     use pathmark_tracer::scene::load;

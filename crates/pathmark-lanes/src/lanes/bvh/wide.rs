@@ -166,10 +166,10 @@ impl<'a, V: Float> Scratch<'a, V> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use super::*;
     use crate::lanes::bvh::Stacks;
-    use crate::lanes::walks::{nearest, side_by_side, walks};
+    use crate::lanes::tests::{nearest, side_by_side, twice, walks};
     use crate::simd::{MOST_LANES, Work, levels, on_level};
     use pathmark_tracer::kernel::Start;
     use pathmark_tracer::math::{Frame, Ray, line_meets};
@@ -205,20 +205,6 @@ pub(super) mod tests {
             }
             all_left
         }
-    }
-
-    /// The scene with every primitive twice, so that every hit is a tie.
-    pub(in crate::lanes::bvh) fn twice(scene: &Scene) -> Scene {
-        let mut twice = scene.clone();
-        let primitives = &mut twice.primitives;
-        let (spheres, planes) = (primitives.spheres.len(), primitives.planes.len());
-        primitives.spheres.extend_from_within(..);
-        primitives.planes.extend_from_within(..);
-        primitives.triangles.extend_from_within(..);
-        let owners = |range: std::ops::Range<usize>| scene.owners[range].repeat(2);
-        let [first, second] = [spheres, spheres + planes];
-        twice.owners = [owners(0..first), owners(first..second), owners(second..scene.owners.len())].concat();
-        twice
     }
 
     /// In double precision the result equals the scalar search's, to the bit: for rays of walks and rays close to

@@ -6,7 +6,6 @@ use crate::simd::{Float, Table};
 use pathmark_tracer::math::{Bits, Real};
 
 register! {
-    /// Four numbers.
     F64x4(__m256d) = 4 f64, Mask4, U64x4, F32x8;
     splat _mm256_set1_pd, load _mm256_loadu_pd, store _mm256_storeu_pd, compare _mm256_cmp_pd, fused _mm256_fmadd_pd,
     add _mm256_add_pd, sub _mm256_sub_pd, mul _mm256_mul_pd, div _mm256_div_pd, xor _mm256_xor_pd,
@@ -18,27 +17,22 @@ register! {
     };
     select(mask, yes, no) = x86::_mm256_blendv_pd(no, yes, mask);
     own {
-        #[inline(always)]
         fn fill(self, mask: Mask4, from: &[f64]) -> Self {
             let next = op!(x86::_mm256_castpd_si256(Self::load(from).0));
             Self::select(mask, Self(op!(x86::_mm256_castsi256_pd(spread(mask, next)))), self)
         }
-        #[inline(always)]
         fn set_lane(&mut self, lane: usize, value: f64) {
             let mut all = [0.0; 4];
             self.store(&mut all);
             all[lane] = value;
             *self = Self::load(&all);
         }
-        #[inline(always)]
         fn sooner(self, other: Self) -> Self {
             self.smaller(other)
         }
-        #[inline(always)]
         fn later(self, other: Self) -> Self {
             self.larger(other)
         }
-        #[inline(always)]
         fn number(bits: U64x4) -> Self {
             // The halves become the lowest digits of 2^84 and of 2^52; these powers are then subtracted again.
             op!({
@@ -50,11 +44,9 @@ register! {
                 high - Self::splat(TWO_84 + TWO_52) + low
             })
         }
-        #[inline(always)]
         fn unit(bits: U64x4) -> Self {
             Self::number(bits.down::<11>()) * Self::splat(1.0 / 9_007_199_254_740_992.0)
         }
-        #[inline(always)]
         fn rows(table: &Table, rows: Self) -> [Self; 4] {
             let mut numbers = [0; 4];
             op!(x86::_mm_storeu_si128(numbers.as_mut_ptr().cast(), x86::_mm256_cvttpd_epi32(rows.0)));

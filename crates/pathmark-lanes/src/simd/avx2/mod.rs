@@ -9,39 +9,14 @@ mod double;
 mod single;
 
 use super::pair::{HalfMask, Pair, PairMask};
-use super::{Apart, Float, Mask, Precision, REVERSED, Words, Work, has_bit_counts};
+use super::{Apart, Float, Mask, Precision, REVERSED, Words, Work};
 use double::F64x4;
 use pathmark_tracer::math::Bits;
 use single::F32x8;
 use std::arch::x86_64 as x86;
 use std::ops::Not;
 
-/// Whether this processor has the instructions used here.
-pub(super) fn is_available() -> bool {
-    is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") && has_bit_counts()
-}
-
-/// Runs `work` with this instruction set.
-pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
-    // SAFETY: `on_level` alone comes here, with a level that has been found on this processor.
-    unsafe {
-        match precision {
-            Precision::F64 => enter::<Pair<F64x4>, W>(work),
-            Precision::F32 => enter::<Pair<F32x8>, W>(work),
-        }
-    }
-}
-
-#[target_feature(enable = "avx2,fma,popcnt,lzcnt,bmi1,bmi2")]
-fn enter<V: Float, W: Work>(work: W) -> W::Output {
-    work.run::<V>()
-}
-
-#[target_feature(enable = "avx2,fma,popcnt,lzcnt,bmi1,bmi2")]
-#[inline(never)]
-fn apart<W: Apart>(work: W) -> W::Output {
-    work.run()
-}
+instruction_set!(F64x4, F32x8; "avx2" "fma" "popcnt" "lzcnt" "bmi1" "bmi2");
 
 #[derive(Clone, Copy)]
 pub(super) struct U64x4(x86::__m256i);

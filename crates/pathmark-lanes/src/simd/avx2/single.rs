@@ -6,7 +6,6 @@ use crate::simd::{Float, Mask, Table};
 use pathmark_tracer::math::{Bits, Real};
 
 register! {
-    /// Eight numbers.
     F32x8(__m256) = 8 f32, Mask8, Pair<U64x4>, Self;
     splat _mm256_set1_ps, load _mm256_loadu_ps, store _mm256_storeu_ps, compare _mm256_cmp_ps, fused _mm256_fmadd_ps,
     add _mm256_add_ps, sub _mm256_sub_ps, mul _mm256_mul_ps, div _mm256_div_ps, xor _mm256_xor_ps,
@@ -18,33 +17,28 @@ register! {
     };
     select(mask, yes, no) = x86::_mm256_blendv_ps(no, yes, mask);
     own {
-        #[inline(always)]
         fn fill(self, mask: Mask8, from: &[f32]) -> Self {
             let order = SPREAD[mask.bits() as usize & 255].as_ptr();
             let next =
                 op!(x86::_mm256_permutevar8x32_ps(Self::load(from).0, x86::_mm256_loadu_si256(order.cast())));
             Self::select(mask, Self(next), self)
         }
-        #[inline(always)]
         fn pack(self, mask: Mask8, to: &mut [f32]) {
             let order = PACKED[mask.bits() as usize & 255].as_ptr();
             Self(op!(x86::_mm256_permutevar8x32_ps(self.0, x86::_mm256_loadu_si256(order.cast())))).store(to);
         }
-        #[inline(always)]
         fn least(self) -> f64 {
             let halves = op!(x86::_mm_min_ps(x86::_mm256_castps256_ps128(self.0), x86::_mm256_extractf128_ps::<1>(self.0)));
             let pairs = op!(x86::_mm_min_ps(halves, x86::_mm_movehl_ps(halves, halves)));
             let both = op!(x86::_mm_min_ss(pairs, x86::_mm_shuffle_ps::<1>(pairs, pairs)));
             f64::from(op!(x86::_mm_cvtss_f32(both)))
         }
-        #[inline(always)]
         fn set_lane(&mut self, lane: usize, value: f64) {
             let mut all = [0.0; 8];
             self.store(&mut all);
             all[lane] = value as f32;
             *self = Self::load(&all);
         }
-        #[inline(always)]
         fn number(bits: Pair<U64x4>) -> Self {
             op!({
                 let lower = x86::_mm256_cvtpd_ps(F64x4::number(bits.0).0);
@@ -52,12 +46,10 @@ register! {
                 Self(x86::_mm256_insertf128_ps::<1>(x86::_mm256_castps128_ps256(lower), upper))
             })
         }
-        #[inline(always)]
         fn unit(bits: Pair<U64x4>) -> Self {
             let bits = bits.down::<40>();
             Self(op!(x86::_mm256_cvtepi32_ps(narrowed(bits.0.0, bits.1.0)))) * Self::splat(1.0 / 16_777_216.0)
         }
-        #[inline(always)]
         fn rows(table: &Table, rows: Self) -> [Self; 4] {
             let mut n = [0; 8];
             op!(x86::_mm256_storeu_si256(n.as_mut_ptr().cast(), x86::_mm256_cvttps_epi32(rows.0)));

@@ -6,7 +6,6 @@ use crate::simd::{Float, Table};
 use pathmark_tracer::math::{Bits, Real};
 
 register! {
-    /// Eight numbers.
     F64x8(__m512d) = 8 f64, Mask8, U64x8, F32x16;
     splat _mm512_set1_pd, load _mm512_loadu_pd, store _mm512_storeu_pd, compare _mm512_cmp_pd_mask, fused _mm512_fmadd_pd,
     add _mm512_add_pd, sub _mm512_sub_pd, mul _mm512_mul_pd, div _mm512_div_pd, xor _mm512_xor_pd,
@@ -20,44 +19,34 @@ register! {
     };
     select(mask, yes, no) = x86::_mm512_mask_blend_pd(mask, no, yes);
     own {
-        #[inline(always)]
         fn fill(self, mask: Mask8, from: &[f64]) -> Self {
             Self(op!(x86::_mm512_mask_expand_pd(self.0, mask.0, Self::load(from).0)))
         }
-        #[inline(always)]
         fn set_lane(&mut self, lane: usize, value: f64) {
             self.0 = op!(x86::_mm512_mask_mov_pd(self.0, 1 << lane, x86::_mm512_set1_pd(value)));
         }
-        #[inline(always)]
         fn least(self) -> f64 {
             op!(x86::_mm512_reduce_min_pd(self.0))
         }
         // As unsigned words, distances keep their order, and negative numbers and NaN come after infinity.
-        #[inline(always)]
         fn ahead(near: Self, far: Self) -> Self {
             near.sooner(far)
         }
-        #[inline(always)]
         fn sooner(self, other: Self) -> Self {
             op!(Self(x86::_mm512_castsi512_pd(x86::_mm512_min_epu64(words(self), words(other)))))
         }
-        #[inline(always)]
         fn later(self, other: Self) -> Self {
             op!(Self(x86::_mm512_castsi512_pd(x86::_mm512_max_epu64(words(self), words(other)))))
         }
-        #[inline(always)]
         fn is_sooner(self, other: Self) -> Mask8 {
             Mask8(op!(x86::_mm512_cmplt_epu64_mask(words(self), words(other))))
         }
-        #[inline(always)]
         fn number(bits: U64x8) -> Self {
             Self(op!(x86::_mm512_cvtepu64_pd(bits.0)))
         }
-        #[inline(always)]
         fn unit(bits: U64x8) -> Self {
             Self::number(bits.down::<11>()) * Self::splat(1.0 / 9_007_199_254_740_992.0)
         }
-        #[inline(always)]
         fn rows(table: &Table, rows: Self) -> [Self; 4] {
             if let Some(columns) = &table.columns {
                 let index = op!(x86::_mm512_cvttpd_epi64(rows.0));

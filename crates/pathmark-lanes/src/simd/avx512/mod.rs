@@ -9,43 +9,14 @@ mod double;
 mod single;
 
 use super::pair::{HalfMask, Pair, PairMask};
-use super::{Apart, Float, Mask, Precision, REVERSED, Words, Work, has_bit_counts};
+use super::{Apart, Float, Mask, Precision, REVERSED, Words, Work};
 use double::F64x8;
 use pathmark_tracer::math::Bits;
 use single::F32x16;
 use std::arch::x86_64 as x86;
 use std::ops::{BitAnd, BitOr, Not};
 
-/// Whether this processor has the instructions used here.
-pub(super) fn is_available() -> bool {
-    is_x86_feature_detected!("avx512f")
-        && is_x86_feature_detected!("avx512dq")
-        && is_x86_feature_detected!("avx512vl")
-        && is_x86_feature_detected!("avx512bw")
-        && has_bit_counts()
-}
-
-/// Runs `work` with this instruction set.
-pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
-    // SAFETY: `on_level` alone comes here, with a level that has been found on this processor.
-    unsafe {
-        match precision {
-            Precision::F64 => enter::<Pair<F64x8>, W>(work),
-            Precision::F32 => enter::<Pair<F32x16>, W>(work),
-        }
-    }
-}
-
-#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw,popcnt,lzcnt,bmi1,bmi2")]
-fn enter<V: Float, W: Work>(work: W) -> W::Output {
-    work.run::<V>()
-}
-
-#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw,popcnt,lzcnt,bmi1,bmi2")]
-#[inline(never)]
-fn apart<W: Apart>(work: W) -> W::Output {
-    work.run()
-}
+instruction_set!(F64x8, F32x16; "avx512f" "avx512dq" "avx512vl" "avx512bw" "popcnt" "lzcnt" "bmi1" "bmi2");
 
 #[derive(Clone, Copy)]
 pub(super) struct U64x8(x86::__m512i);

@@ -6,7 +6,6 @@ use crate::simd::{Float, Table};
 use pathmark_tracer::math::{Bits, Real};
 
 register! {
-    /// Sixteen numbers.
     F32x16(__m512) = 16 f32, Mask16, Pair<U64x8>, Self;
     splat _mm512_set1_ps, load _mm512_loadu_ps, store _mm512_storeu_ps, compare _mm512_cmp_ps_mask, fused _mm512_fmadd_ps,
     add _mm512_add_ps, sub _mm512_sub_ps, mul _mm512_mul_ps, div _mm512_div_ps, xor _mm512_xor_ps,
@@ -20,24 +19,19 @@ register! {
     };
     select(mask, yes, no) = x86::_mm512_mask_blend_ps(mask, no, yes);
     own {
-        #[inline(always)]
         fn fill(self, mask: Mask16, from: &[f32]) -> Self {
             Self(op!(x86::_mm512_mask_expand_ps(self.0, mask.0, Self::load(from).0)))
         }
-        #[inline(always)]
         fn pack(self, mask: Mask16, to: &mut [f32]) {
             // Stores the whole register: some processors take a hundred cycles to compress into memory.
             Self(op!(x86::_mm512_maskz_compress_ps(mask.0, self.0))).store(to);
         }
-        #[inline(always)]
         fn set_lane(&mut self, lane: usize, value: f64) {
             self.0 = op!(x86::_mm512_mask_mov_ps(self.0, 1 << lane, x86::_mm512_set1_ps(value as f32)));
         }
-        #[inline(always)]
         fn least(self) -> f64 {
             f64::from(op!(x86::_mm512_reduce_min_ps(self.0)))
         }
-        #[inline(always)]
         fn number(bits: Pair<U64x8>) -> Self {
             op!({
                 let lower = x86::_mm256_castps_pd(x86::_mm512_cvtpd_ps(F64x8::number(bits.0).0));
@@ -46,7 +40,6 @@ register! {
                 Self(x86::_mm512_castpd_ps(both))
             })
         }
-        #[inline(always)]
         fn unit(bits: Pair<U64x8>) -> Self {
             let bits = bits.down::<40>();
             let numbers = op!({
@@ -55,7 +48,6 @@ register! {
             });
             Self(numbers) * Self::splat(1.0 / 16_777_216.0)
         }
-        #[inline(always)]
         fn rows(table: &Table, rows: Self) -> [Self; 4] {
             if let Some(columns) = &table.single_columns {
                 let index = op!(x86::_mm512_cvttps_epi32(rows.0));

@@ -31,8 +31,8 @@ pub struct Inspector {
 impl Inspector {
     /// An inspector for the samples of an image, whose kernel renders them in f64.
     pub fn new(scene: &Arc<Scene>, options: &RenderOptions) -> Result<Self> {
-        if options.precision() != Precision::F64 {
-            let name = options.precision().name();
+        if options.plan.precision() != Precision::F64 {
+            let name = options.plan.precision().name();
             let problem = "is rendered by SIMD lanes only, which cannot report the events of a path";
             return Err(InputError::new("precision", name, problem).allowed(Precision::F64.name()).into());
         }

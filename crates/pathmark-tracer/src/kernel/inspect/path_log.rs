@@ -9,20 +9,15 @@ use crate::scene::Hit;
 pub enum Event {
     /// A ray arrived at a surface.
     Surface {
-        /// Bounces before it.
         bounces: u16,
-        /// Origin of the ray.
         origin: Vec3,
-        /// The intersection.
         hit: Hit,
         /// Throughput of the light from there.
         throughput: Rgb,
     },
     /// Fog scattered a ray.
     Fog {
-        /// Bounces before it.
         bounces: u16,
-        /// Origin of the ray.
         origin: Vec3,
         /// Point where the ray was scattered.
         point: Vec3,
@@ -38,9 +33,7 @@ pub enum Event {
         /// Its contribution, throughput included.
         radiance: Rgb,
     },
-    /// The path split.
     Split {
-        /// Bounces before it.
         bounces: u16,
     },
     /// A ray met nothing.
@@ -51,7 +44,6 @@ pub enum Event {
     Roulette,
     /// A part of the path ended. The next event belongs to the part that was split off last.
     Ended {
-        /// Bounces of the part.
         bounces: u16,
     },
 }
@@ -59,9 +51,7 @@ pub enum Event {
 /// A probe that records the events of a path.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PathLog {
-    /// The events, in order.
     pub events: Vec<Event>,
-    /// Rays traced.
     pub rays: u64,
 }
 

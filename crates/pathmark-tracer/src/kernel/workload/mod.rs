@@ -28,17 +28,12 @@ pub const WORKLOAD: &str = "workload";
 /// One item of work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Item {
-    /// Column, from 0.
     pub x: u32,
-    /// Row, from 0.
     pub y: u32,
-    /// Columns in all.
     pub width: u32,
-    /// Rows in all.
     pub height: u32,
     /// Number of the sample, from 0.
     pub sample: u32,
-    /// Seed of the run.
     pub seed: u64,
 }
 
@@ -69,7 +64,6 @@ pub trait Workload: Send + Sync + 'static {
     fn run(&self, item: &Item) -> [f64; 3];
 }
 
-/// A named workload.
 #[derive(Clone)]
 pub struct Entry {
     /// The name, valid wherever a scene's name is.

@@ -33,7 +33,6 @@ pub struct Camera {
     pub lens: Option<Lens>,
 }
 
-/// A thin lens.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lens {
     pub radius: f64,
@@ -114,7 +113,6 @@ cameras! {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
     pub camera: Camera,
-    /// The pixel filter.
     pub filter: Filter,
     /// Across the image plane, from left to right.
     pub right: Vec3,
@@ -126,7 +124,6 @@ pub struct View {
 }
 
 impl Camera {
-    /// Returns the effects that it uses.
     pub fn effects(&self) -> Effects {
         if self.lens.is_some() { LENS } else { Effects::NONE }
     }

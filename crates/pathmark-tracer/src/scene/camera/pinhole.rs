@@ -42,7 +42,7 @@ pub(super) fn upwards() -> Vec3 {
 /// Returns a camera at `position` that looks at `target`; `field` is the height of the image plane at distance 1.
 pub(super) fn looking_at(position: Vec3, target: Vec3, up: Vec3, field: f64) -> Result<Camera, &'static str> {
     let towards = target - position;
-    let largest = towards.x.abs().max(towards.y.abs()).max(towards.z.abs());
+    let largest = towards.largest();
     if largest < 1e-100 {
         return Err("the camera looks at its own position (allowed: another point)");
     }

@@ -29,7 +29,6 @@ struct Slack {
 }
 
 impl Slack {
-    /// In double precision.
     const DOUBLE: Self = Self { flat: 1.0 / (1_u64 << 48) as f64, sphere: 1.0 / (1_u64 << 40) as f64, least: 0.0 };
 
     /// The largest height of a point above another one in its plane. Coordinates along the plane do not round heights.
@@ -41,7 +40,7 @@ impl Slack {
     }
 
     fn of(&self, sphere: &Sphere) -> f64 {
-        self.sphere * (largest(sphere.center) + sphere.radius) + self.least
+        self.sphere * (sphere.center.largest() + sphere.radius) + self.least
     }
 }
 
@@ -51,13 +50,9 @@ const MOST_COVERS: usize = 64;
 /// The most remarks on pairs of objects.
 const MOST_REMARKS: usize = 8;
 
-fn largest(v: Vec3) -> f64 {
-    v.x.abs().max(v.y.abs()).max(v.z.abs())
-}
-
 impl Sphere {
     fn is_where(&self, other: &Self, slack: &Slack) -> bool {
-        largest(self.center - other.center).max((self.radius - other.radius).abs()) <= slack.of(self)
+        (self.center - other.center).largest().max((self.radius - other.radius).abs()) <= slack.of(self)
     }
 
     /// A number that is nearly the same for spheres in one place, and hardly ever for others.
@@ -68,7 +63,7 @@ impl Sphere {
 
 impl Plane {
     fn is_where(&self, other: &Self, slack: &Slack) -> bool {
-        largest(self.normal.cross(other.normal)) <= slack.flat && self.contains(other.point, slack)
+        self.normal.cross(other.normal).largest() <= slack.flat && self.contains(other.point, slack)
     }
 
     fn contains(&self, point: Vec3, slack: &Slack) -> bool {

@@ -1,7 +1,7 @@
 //! Surfaces that are one to single precision: they are so near that its rounding decides which of them rays meet.
 
 use super::overlap::{Flat, largest_distance, longest_edge};
-use super::{Slack, largest, spheres_in_one_place};
+use super::{Slack, spheres_in_one_place};
 use crate::scene::extent::length;
 use crate::scene::{Scene, Sphere, Triangle};
 
@@ -13,7 +13,7 @@ impl Scene {
     ///
     /// It compares spheres, planes, and triangles of two objects with their like, and triangles with planes.
     pub(in crate::scene) fn near_in_single_precision(&self) -> Option<[String; 2]> {
-        let camera = largest(self.camera.position);
+        let camera = self.camera.position.largest();
         let slack = Slack { flat: SINGLE, sphere: SINGLE, least: SINGLE * camera };
         let [of_plane, of_triangle] =
             [self.primitives.spheres.len(), self.primitives.spheres.len() + self.primitives.planes.len()];
@@ -70,7 +70,7 @@ fn are_one(one: &Sphere, other: &Sphere, size: f64, slack: &Slack) -> bool {
     let direction = |sphere: &Sphere| sphere.center * (1.0 / sphere.radius);
     let distance = |sphere: &Sphere| length(sphere.center) - sphere.radius;
     let curvature = |sphere: &Sphere| size / sphere.radius;
-    largest(direction(one) - direction(other)) <= slack.flat
+    (direction(one) - direction(other)).largest() <= slack.flat
         && (distance(one) - distance(other)).abs() <= slack.flat * size + slack.least
         && (curvature(one) - curvature(other)).abs() <= slack.flat
 }

@@ -1,6 +1,6 @@
 //! Triangles that overlap in one plane.
 
-use super::{MOST_COVERS, Slack, largest};
+use super::{MOST_COVERS, Slack};
 use crate::math::{Vec3, dot};
 use crate::scene::{Bounds, Primitive, Triangle};
 use std::collections::HashMap;
@@ -120,13 +120,13 @@ fn component(v: Vec3, axis: usize) -> f64 {
 }
 
 pub(super) fn longest_edge(Triangle { corners: [a, b, c] }: &Triangle) -> f64 {
-    largest(*b - *a).max(largest(*c - *b)).max(largest(*a - *c))
+    (*b - *a).largest().max((*c - *b).largest()).max((*a - *c).largest())
 }
 
 /// The largest distance of two places that are the same.
 pub(super) fn largest_distance(one: &Triangle, other: &Triangle, slack: &Slack) -> f64 {
     slack.least
-        + slack.flat * one.corners.iter().chain(&other.corners).map(|corner| largest(*corner)).fold(0.0, f64::max)
+        + slack.flat * one.corners.iter().chain(&other.corners).map(|corner| corner.largest()).fold(0.0, f64::max)
 }
 
 /// Whether two triangles are in one plane and share an area.

@@ -3,16 +3,13 @@
 //! Its surface is cut along m - 1 parallels and 2 m meridians into 4 m (m - 1) triangles, with the smallest m that
 //! gives at least the requested number.
 
-use super::{Generate, Made};
+use super::Made;
 use crate::material::{Diffuse, Material};
 use crate::math::{Rgb, Vec3};
 use crate::scene::Triangle;
 use crate::scene::shape::AnyShape;
 use serde::Deserialize;
 use std::f64::consts::PI;
-
-/// The same limit as for balls.
-const MOST: f64 = super::spheres::MOST;
 
 const RADIUS: f64 = 0.6;
 /// Height of the bumps divided by the radius.
@@ -23,7 +20,7 @@ const BUMPS: f64 = 0.08;
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct BumpyBall {
     /// The least number of triangles: the number behind the scene's name.
-    triangles: u32,
+    pub(super) triangles: u32,
 }
 
 impl BumpyBall {
@@ -43,22 +40,8 @@ fn point(bands: u32, i: u32, j: u32) -> Vec3 {
     Vec3::new(ring * libm::cos(around), libm::cos(down), ring * libm::sin(around)) * radius
 }
 
-impl Generate for BumpyBall {
-    const FIELD: &'static str = "triangles";
-
-    fn number(&self) -> f64 {
-        f64::from(self.triangles)
-    }
-
-    fn set_number(&mut self, number: f64) -> Result<(), &'static str> {
-        if !(8.0..=MOST).contains(&number) || number.fract() != 0.0 {
-            return Err("a whole number from 8 to 10000000");
-        }
-        self.triangles = number as u32;
-        Ok(())
-    }
-
-    fn make(&self) -> Vec<Made> {
+impl BumpyBall {
+    pub(super) fn make(&self) -> Vec<Made> {
         let bands = self.bands();
         let mut shapes = Vec::with_capacity(4 * bands as usize * (bands as usize - 1));
         for i in 0..bands {

@@ -1,8 +1,8 @@
 //! Balls in clusters in the cube from -1 to 1. Each cluster has a random centre and a density that decreases around it,
 //! so that most of the cube is empty and a few places are crowded.
 
-use super::spheres::{Balls, MOST};
-use super::{Generate, Made};
+use super::Made;
+use super::spheres::Balls;
 use crate::math::Vec3;
 use serde::Deserialize;
 
@@ -11,8 +11,7 @@ use serde::Deserialize;
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Clusters {
     /// The number of balls: the number behind the scene's name.
-    count: u32,
-    /// The number of clusters.
+    pub(super) count: u32,
     groups: std::num::NonZeroU16,
     /// The seed of their places and colours.
     seed: u64,
@@ -21,22 +20,8 @@ pub(in crate::scene) struct Clusters {
 /// Half the width of a cluster. An offset is the mean of two uniform ones, so its density is a tent.
 const SPREAD: f64 = 0.12;
 
-impl Generate for Clusters {
-    const FIELD: &'static str = "count";
-
-    fn number(&self) -> f64 {
-        f64::from(self.count)
-    }
-
-    fn set_number(&mut self, number: f64) -> Result<(), &'static str> {
-        if !(1.0..=MOST).contains(&number) || number.fract() != 0.0 {
-            return Err("a whole number from 1 to 10000000");
-        }
-        self.count = number as u32;
-        Ok(())
-    }
-
-    fn make(&self) -> Vec<Made> {
+impl Clusters {
+    pub(super) fn make(&self) -> Vec<Made> {
         // The radius that they would have in a cube of a cluster's size.
         let mut balls = Balls::new(
             self.seed,

@@ -2,7 +2,7 @@
 //! ball neither absorb nor emit. The radiance is therefore 1 everywhere, in every direction, for any albedo. A higher
 //! albedo makes longer paths.
 
-use super::{Generate, Made};
+use super::Made;
 use crate::material::{Dielectric, Diffuse, Fresnel, Material, Mirror};
 use crate::math::{Rgb, Vec3};
 use crate::scene::Sphere;
@@ -14,25 +14,11 @@ use serde::Deserialize;
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Furnace {
     /// The albedo of the walls: the number behind the scene's name.
-    albedo: f64,
+    pub(super) albedo: f64,
 }
 
-impl Generate for Furnace {
-    const FIELD: &'static str = "albedo";
-
-    fn number(&self) -> f64 {
-        self.albedo
-    }
-
-    fn set_number(&mut self, number: f64) -> Result<(), &'static str> {
-        if !(0.0..1.0).contains(&number) {
-            return Err("an albedo from 0 to below 1");
-        }
-        self.albedo = number;
-        Ok(())
-    }
-
-    fn make(&self) -> Vec<Made> {
+impl Furnace {
+    pub(super) fn make(&self) -> Vec<Made> {
         let grey = |x: f64| Rgb { r: x, g: x, b: x };
         // The bits of k select -1 or 1 for each coordinate of corner k.
         let corner = |k: u8| {

@@ -5,7 +5,7 @@
 //! fifth vertex, a path takes 5 + 1/(1 - albedo) rays on average, which determines the albedo. The sphere emits the
 //! light that it does not reflect, so the corner is white.
 
-use super::{Generate, Made};
+use super::Made;
 use crate::material::{Diffuse, Material};
 use crate::math::{Rgb, Vec3};
 use crate::scene::Sphere;
@@ -20,25 +20,11 @@ const CERTAIN: f64 = 5.0;
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Imbalance {
     /// Mean number of rays of a path in the corner (elsewhere one): the number behind the scene's name.
-    factor: f64,
+    pub(super) factor: f64,
 }
 
-impl Generate for Imbalance {
-    const FIELD: &'static str = "factor";
-
-    fn number(&self) -> f64 {
-        self.factor
-    }
-
-    fn set_number(&mut self, number: f64) -> Result<(), &'static str> {
-        if !(7.0..=1000.0).contains(&number) {
-            return Err("a factor from 7 to 1000");
-        }
-        self.factor = number;
-        Ok(())
-    }
-
-    fn make(&self) -> Vec<Made> {
+impl Imbalance {
+    pub(super) fn make(&self) -> Vec<Made> {
         let albedo = 1.0 - 1.0 / (self.factor - CERTAIN);
         let grey = |x: f64| Rgb { r: x, g: x, b: x };
         let diffuse = |albedo: f64| Material::Diffuse(Diffuse { albedo: grey(albedo) });

@@ -1,7 +1,7 @@
 //! Balls of equal size at random places in the cube from -1 to 1; they may overlap. Their radius decreases with the
 //! cube root of their number, so that they fill the same share of the cube and the image keeps its character.
 
-use super::{Generate, Made};
+use super::Made;
 use crate::material::{Diffuse, Material};
 use crate::math::{Rgb, Vec3};
 use crate::scene::Sphere;
@@ -9,9 +9,6 @@ use crate::scene::shape::AnyShape;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::Deserialize;
-
-/// The most balls; the numbers of primitives have room to spare.
-pub(super) const MOST: f64 = 1e7;
 
 /// Number of colours; all balls of one colour are one object.
 const COLOURS: usize = 8;
@@ -21,27 +18,13 @@ const COLOURS: usize = 8;
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Spheres {
     /// The number of balls: the number behind the scene's name.
-    count: u32,
+    pub(super) count: u32,
     /// The seed of their places and colours.
     seed: u64,
 }
 
-impl Generate for Spheres {
-    const FIELD: &'static str = "count";
-
-    fn number(&self) -> f64 {
-        f64::from(self.count)
-    }
-
-    fn set_number(&mut self, number: f64) -> Result<(), &'static str> {
-        if !(1.0..=MOST).contains(&number) || number.fract() != 0.0 {
-            return Err("a whole number from 1 to 10000000");
-        }
-        self.count = number as u32;
-        Ok(())
-    }
-
-    fn make(&self) -> Vec<Made> {
+impl Spheres {
+    pub(super) fn make(&self) -> Vec<Made> {
         let mut balls = Balls::new(self.seed, 0.5 / libm::cbrt(f64::from(self.count.max(1))));
         for _ in 0..self.count {
             let place = balls.place();

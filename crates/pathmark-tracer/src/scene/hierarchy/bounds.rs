@@ -5,9 +5,7 @@ use crate::math::{Ray, Vec3};
 /// A closed box; it may be flat, or a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    /// The smallest coordinates.
     pub low: [f64; 3],
-    /// The largest coordinates.
     pub high: [f64; 3],
 }
 
@@ -103,7 +101,6 @@ pub struct Slabs {
 
 impl Slabs {
     #[inline(always)]
-    /// Prepares the ray.
     pub fn new(ray: &Ray) -> Self {
         let origin = [ray.origin.x, ray.origin.y, ray.origin.z];
         let direction = [ray.direction.x, ray.direction.y, ray.direction.z];

@@ -29,7 +29,6 @@ pub struct Tests {
 /// A node: a box, and where its children or primitives are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Node {
-    /// The faces of its box.
     pub faces: Faces,
     /// For an inner node, the first child (the second one follows it); for a leaf, its first entry in
     /// [`Hierarchy::order`].

@@ -28,20 +28,8 @@ pub struct Aim {
     pub density: f64,
 }
 
-/// A target of next-event estimation. Directions come with their density per steradian, seen from `point`.
-trait Target {
-    /// Samples a direction; `None` if the sampled one does not lead to the target. If the point is on the target
-    /// itself, `own` says whether it is on the inner side.
-    fn aim(&self, point: Vec3, own: Option<bool>, u: [f64; 2]) -> Option<(Vec3, f64)>;
-
-    /// Returns the density of the direction of a ray that started at `ray.origin` and met the target at `hit`; 0 if it
-    /// is never sampled.
-    fn density(&self, ray: &Ray, own: Option<bool>, hit: &Hit) -> f64;
-
-    /// Returns the area that is aimed at.
-    fn area(&self) -> f64;
-}
-
+/// A target of next-event estimation. Directions come with their density per steradian, seen from `point`. If a point is
+/// on the target itself, `own` says whether it is on the inner side.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AnyTarget {
     /// A sphere, or its cap that paths can reach.
@@ -80,7 +68,6 @@ impl AnyTarget {
 pub struct Light {
     pub target: AnyTarget,
     pub primitive: u32,
-    /// The probability of choosing it.
     pub chance: f64,
     /// The probability of choosing it or one before it.
     pub up_to: f64,
@@ -89,7 +76,6 @@ pub struct Light {
 /// The most pairs of a light and a wall that are tested; with more, whole spheres are targets.
 const MOST_PAIRS: usize = 1 << 24;
 
-/// The lights of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lights {
     /// Every light that estimators aim at.

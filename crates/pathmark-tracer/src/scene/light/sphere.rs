@@ -2,7 +2,6 @@
 //! Techniques for Direct Lighting Calculations", 1996), uniformly over all directions from inside it, and by area if
 //! only a small part can be reached.
 
-use super::Target;
 use crate::math::{Frame, Ray, Real, Vec3, dot, sin_cos_turns};
 use crate::sampling::{UNIFORM_SPHERE_DENSITY, uniform_sphere};
 use crate::scene::{Hit, Sphere};
@@ -84,11 +83,10 @@ impl SphereTarget {
             }
         }
     }
-}
 
-impl Target for SphereTarget {
+    /// Samples a direction; `None` if the sampled one does not lead to the target.
     #[inline(always)]
-    fn aim(&self, point: Vec3, own: Option<bool>, u: [f64; 2]) -> Option<(Vec3, f64)> {
+    pub(super) fn aim(&self, point: Vec3, own: Option<bool>, u: [f64; 2]) -> Option<(Vec3, f64)> {
         match self.way(point, own)? {
             Way::Everywhere => Some((uniform_sphere(u), UNIFORM_SPHERE_DENSITY)),
             Way::Cone { axis, one_minus_cos } => {
@@ -105,8 +103,10 @@ impl Target for SphereTarget {
         }
     }
 
+    /// Returns the density of the direction of a ray that started at `ray.origin` and met the target at `hit`; 0 if it
+    /// is never sampled.
     #[inline(always)]
-    fn density(&self, ray: &Ray, own: Option<bool>, hit: &Hit) -> f64 {
+    pub(super) fn density(&self, ray: &Ray, own: Option<bool>, hit: &Hit) -> f64 {
         match self.way(ray.origin, own) {
             None => 0.0,
             Some(Way::Everywhere) => UNIFORM_SPHERE_DENSITY,
@@ -122,7 +122,7 @@ impl Target for SphereTarget {
         }
     }
 
-    fn area(&self) -> f64 {
+    pub(super) fn area(&self) -> f64 {
         let radius = self.sphere.radius;
         2.0 * PI * radius * self.cap.map_or(2.0 * radius, |cap| cap.height)
     }

@@ -1,7 +1,6 @@
 //! A triangle as a target: points are sampled uniformly over its area (Turk, "Generating Random Points in Triangles",
 //! 1990). It emits on both sides.
 
-use super::Target;
 use crate::math::{Ray, Real, Vec3, dot};
 use crate::scene::{Hit, Primitive, Triangle};
 
@@ -40,11 +39,9 @@ impl TriangleTarget {
         let area = 0.5 * dot(cross, cross).sqrt();
         area.is_normal().then(|| Self { corner: a, edges, normal: triangle.normal(a), area })
     }
-}
 
-impl Target for TriangleTarget {
     #[inline(always)]
-    fn aim(&self, point: Vec3, own: Option<bool>, u: [f64; 2]) -> Option<(Vec3, f64)> {
+    pub(super) fn aim(&self, point: Vec3, own: Option<bool>, u: [f64; 2]) -> Option<(Vec3, f64)> {
         let towards = point_of(self.corner, self.edges, u) - point;
         let square = dot(towards, towards);
         let direction = towards * (1.0 / square.sqrt());
@@ -53,11 +50,11 @@ impl Target for TriangleTarget {
     }
 
     #[inline(always)]
-    fn density(&self, ray: &Ray, _own: Option<bool>, hit: &Hit) -> f64 {
+    pub(super) fn density(&self, ray: &Ray, _own: Option<bool>, hit: &Hit) -> f64 {
         per_steradian(hit.t * hit.t, ray.direction, self.normal, self.area)
     }
 
-    fn area(&self) -> f64 {
+    pub(super) fn area(&self) -> f64 {
         self.area
     }
 }

@@ -35,11 +35,6 @@ pub const fn nearness(digits: u32) -> f64 {
     1.0 / (1_u64 << (digits * 5 / 8)) as f64
 }
 
-/// Returns the largest absolute coordinate of a vector.
-fn largest(v: Vec3) -> f64 {
-    v.x.abs().max(v.y.abs()).max(v.z.abs())
-}
-
 /// The reasons to doubt a hit.
 struct Looks {
     /// Whether the ray starts near the triangle's plane.
@@ -53,7 +48,7 @@ impl Triangle {
     #[inline(always)]
     fn looks(&self, ray: &Ray, t: f64, normal: Vec3, digits: u32) -> Looks {
         let bounds = Bounds::of_points(&self.corners);
-        let reach = bounds.largest() + largest(ray.origin);
+        let reach = bounds.largest() + ray.origin.largest();
         let Bounds { low, high } = bounds.grown(0.5 * padding(f64::MANTISSA_DIGITS) * reach);
         let Vec3 { x, y, z } = ray.at(t);
         Looks {

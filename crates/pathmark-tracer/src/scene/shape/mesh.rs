@@ -7,18 +7,18 @@
 //! ```
 //!
 //! A wrong path may lead to an endless file, so a file of more than a gibibyte is refused, unless the scene raises the
-//! limit: `largest-mib = 4096`. `scale`, `rotate` and `translate` place the mesh ([`Placement`]).
+//! limit: `largest-mib = 4096`. `scale`, `rotate` and `translate` place the mesh ([`placing`]).
 
 #[cfg(test)]
 mod tests;
 
-use super::placement::Placement;
+use super::placement::placing;
 use super::polygon::Cutter;
 use super::{Primitives, Shape, Triangle, foreign, obj, ply};
 use crate::error::{Error, InputError, Result};
 use crate::input::{coordinate_limit, degrees, length, point, unreadable};
 use crate::math::Vec3;
-use crate::scene::source::{Files, Folder};
+use crate::scene::library::{Files, Folder};
 use serde::Deserialize;
 use std::io::BufRead;
 use std::path::Path;
@@ -122,10 +122,9 @@ impl Mesh {
     /// The function that places a face's corners.
     fn placing(&self, folder: &Folder) -> impl Fn(&mut [Vec3]) -> Result<()> {
         let Self { scale, rotate, translate, .. } = *self;
-        let placement = Placement { scale, rotate, translate };
-        let still = Placement { scale: 1.0, rotate: [0.0; 3], translate: origin() };
         // A mesh that stays where it is keeps every bit.
-        let placing = (placement != still).then(|| placement.placing());
+        let is_moved = (scale, rotate, translate) != (1.0, [0.0; 3], origin());
+        let placing = is_moved.then(|| placing(scale, rotate, translate));
         let beyond = self.error(folder, "mesh", "", "`scale` and `translate` move a vertex out of range");
         let beyond = beyond.allowed("-1e100 to 1e100 in each coordinate");
         move |corners| {

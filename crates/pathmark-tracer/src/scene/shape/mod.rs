@@ -25,7 +25,7 @@ use super::{HIERARCHY, SurfaceOrigin};
 use crate::effect::{EffectSet, Effects, Entry};
 use crate::error::Result;
 use crate::math::{Ray, Vec3};
-use crate::scene::source::Files;
+use crate::scene::library::Files;
 pub use doubt::nearness;
 pub(super) use mesh::Mesh;
 pub(super) use quad::Quad;
@@ -80,7 +80,6 @@ macro_rules! primitives {
         enum Index { $($Type),* }
 
         $(impl $Type {
-            /// The bit of this effect.
             pub const EFFECT: Effects = Effects::primitive(Index::$Type as u32);
         })*
 

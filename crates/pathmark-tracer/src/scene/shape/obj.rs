@@ -69,7 +69,6 @@ struct Statements<'a, R> {
     /// The number of its first line, and of its last one.
     first: usize,
     lines: usize,
-    /// Bytes before it.
     before: usize,
 }
 

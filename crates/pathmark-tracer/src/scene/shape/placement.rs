@@ -9,17 +9,6 @@
 
 use crate::math::Vec3;
 
-/// A placement that moves vertices.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Placement {
-    /// Factor of every length.
-    pub(super) scale: f64,
-    /// Angles about the axes, in degrees.
-    pub(super) rotate: [f64; 3],
-    /// The place of the file's origin.
-    pub(super) translate: Vec3,
-}
-
 /// Sine and cosine of an angle in degrees, exact for multiples of 90.
 fn sin_cos(degrees: f64) -> (f64, f64) {
     let quarters = (degrees / 90.0).round();
@@ -32,19 +21,17 @@ fn sin_cos(degrees: f64) -> (f64, f64) {
     }
 }
 
-impl Placement {
-    /// Returns the function that places a vertex.
-    pub(super) fn placing(self) -> impl Fn(Vec3) -> Vec3 {
-        let Self { scale, rotate, translate } = self;
-        let [about_x, about_y, about_z] = rotate.map(sin_cos);
-        let turn = |(sin, cos): (f64, f64), [a, b]: [f64; 2]| [cos * a - sin * b, sin * a + cos * b];
-        move |vertex| {
-            let Vec3 { x, y, z } = vertex * scale;
-            let [y, z] = turn(about_x, [y, z]);
-            let [z, x] = turn(about_y, [z, x]);
-            let [x, y] = turn(about_z, [x, y]);
-            Vec3::new(x, y, z) + translate
-        }
+/// Returns the function that places a vertex, by a factor of every length, angles in degrees, and the place of the file's
+/// origin.
+pub(super) fn placing(scale: f64, rotate: [f64; 3], translate: Vec3) -> impl Fn(Vec3) -> Vec3 {
+    let [about_x, about_y, about_z] = rotate.map(sin_cos);
+    let turn = |(sin, cos): (f64, f64), [a, b]: [f64; 2]| [cos * a - sin * b, sin * a + cos * b];
+    move |vertex| {
+        let Vec3 { x, y, z } = vertex * scale;
+        let [y, z] = turn(about_x, [y, z]);
+        let [z, x] = turn(about_y, [z, x]);
+        let [x, y] = turn(about_z, [x, y]);
+        Vec3::new(x, y, z) + translate
     }
 }
 
@@ -53,8 +40,7 @@ mod tests {
     use super::*;
 
     fn placed(scale: f64, rotate: [f64; 3], translate: [f64; 3], vertex: [f64; 3]) -> [f64; 3] {
-        let placement = Placement { scale, rotate, translate: translate.into() };
-        let Vec3 { x, y, z } = placement.placing()(vertex.into());
+        let Vec3 { x, y, z } = placing(scale, rotate, translate.into())(vertex.into());
         [x, y, z]
     }
 

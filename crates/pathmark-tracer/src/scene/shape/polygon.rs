@@ -34,10 +34,6 @@ pub(super) struct Cutter {
     crossed: usize,
 }
 
-fn largest(v: Vec3) -> f64 {
-    v.x.abs().max(v.y.abs()).max(v.z.abs())
-}
-
 fn length(v: Vec3) -> f64 {
     dot(v, v).sqrt()
 }
@@ -49,7 +45,7 @@ fn twice_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
 
 /// Drops the coordinate in which the normal is longest; the others keep the sense of rotation if it is positive there.
 fn project(normal: Vec3) -> (fn(Vec3) -> [f64; 2], f64) {
-    let size = largest(normal);
+    let size = normal.largest();
     if normal.z.abs() == size {
         (|v| [v.x, v.y], normal.z)
     } else if normal.y.abs() == size {
@@ -79,7 +75,7 @@ impl Cutter {
     /// Whether the diagonals from the first corner are inside the polygon. If not, `indices` has the triangles.
     fn is_cut_from_its_first(&mut self, corners: &[Vec3]) -> bool {
         // Relative to the first corner and to the extent, so that no size over- or underflows.
-        let extent = corners.iter().map(|corner| largest(*corner - corners[0])).fold(0.0, f64::max);
+        let extent = corners.iter().map(|corner| (*corner - corners[0]).largest()).fold(0.0, f64::max);
         self.relative.clear();
         self.relative.extend(corners.iter().map(|corner| {
             let Vec3 { x, y, z } = *corner - corners[0];

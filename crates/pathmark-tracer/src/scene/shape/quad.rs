@@ -11,7 +11,7 @@ use super::triangle::points;
 use super::{Primitives, Shape, Triangle};
 use crate::error::Result;
 use crate::math::Vec3;
-use crate::scene::source::Files;
+use crate::scene::library::Files;
 use serde::{Deserialize, Deserializer};
 
 /// Four corners; they need not lie in a plane.

@@ -13,7 +13,6 @@ use serde::Deserialize;
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sphere {
-    /// Its centre.
     #[serde(deserialize_with = "point")]
     pub center: Vec3,
     #[serde(deserialize_with = "length")]

@@ -75,8 +75,7 @@ impl Primitive for Triangle {
     fn normal(&self, _point: Vec3) -> Vec3 {
         let [a, b, c] = self.corners;
         let (e, f) = (b - a, c - a);
-        let largest = |v: Vec3| v.x.abs().max(v.y.abs()).max(v.z.abs());
-        let cross = (e * (1.0 / largest(e))).cross(f * (1.0 / largest(f)));
+        let cross = (e * (1.0 / e.largest())).cross(f * (1.0 / f.largest()));
         debug_assert!(!dot(cross, cross).is_infinite());
         cross.normalized()
     }

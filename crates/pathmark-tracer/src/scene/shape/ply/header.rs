@@ -3,7 +3,6 @@
 use super::LONGEST;
 use crate::error::{InputError, Result};
 
-/// The encoding of the elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {
     Text,
@@ -11,88 +10,57 @@ pub(super) enum Encoding {
     BigEndian,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Type {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    F32,
-    F64,
+#[derive(Debug)]
+pub(super) struct Type {
+    /// Both names that files use.
+    names: [&'static str; 2],
+    pub(super) is_whole: bool,
+    /// Its bytes in a binary file.
+    pub(super) size: usize,
+    /// The number that a word of a text stands for; `None` if it is none of this type.
+    pub(super) parsed: fn(&str) -> Option<f64>,
+    /// The number that [`Type::size`] bytes stand for, the lowest byte first; more bytes are zero.
+    pub(super) decoded: fn([u8; 8]) -> f64,
 }
 
-/// The types with both names that files use.
-const TYPES: [(&str, &str, Type); 8] = [
-    ("char", "int8", Type::I8),
-    ("uchar", "uint8", Type::U8),
-    ("short", "int16", Type::I16),
-    ("ushort", "uint16", Type::U16),
-    ("int", "int32", Type::I32),
-    ("uint", "uint32", Type::U32),
-    ("float", "float32", Type::F32),
-    ("double", "float64", Type::F64),
-];
+macro_rules! types {
+    ($($Number:ty, $short:literal, $long:literal, $is_whole:literal;)*) => {
+        const TYPES: &[Type] = &[$(Type {
+            names: [$short, $long],
+            is_whole: $is_whole,
+            size: size_of::<$Number>(),
+            parsed: |word| word.parse::<$Number>().ok().map(f64::from),
+            decoded: |bytes| bytes.first_chunk().map_or(0.0, |bytes| <$Number>::from_le_bytes(*bytes).into()),
+        }),*];
+    };
+}
+
+types! {
+    i8, "char", "int8", true;
+    u8, "uchar", "uint8", true;
+    i16, "short", "int16", true;
+    u16, "ushort", "uint16", true;
+    i32, "int", "int32", true;
+    u32, "uint", "uint32", true;
+    f32, "float", "float32", false;
+    f64, "double", "float64", false;
+}
 
 impl Type {
-    fn named(name: &str) -> Option<Self> {
-        TYPES.iter().find(|(short, long, _)| [*short, *long].contains(&name)).map(|entry| entry.2)
+    fn named(name: &str) -> Option<&'static Self> {
+        TYPES.iter().find(|of| of.names.contains(&name))
     }
 
-    pub(super) fn name(self) -> &'static str {
-        TYPES.iter().find(|entry| entry.2 == self).map_or("", |entry| entry.0)
-    }
-
-    pub(super) fn is_whole(self) -> bool {
-        !matches!(self, Self::F32 | Self::F64)
-    }
-
-    /// Its bytes in a binary file.
-    pub(super) fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::F64 => 8,
-        }
-    }
-
-    /// Returns the number that a word of a text stands for; `None` if it is none of this type.
-    pub(super) fn parsed(self, word: &str) -> Option<f64> {
-        match self {
-            Self::I8 => word.parse::<i8>().ok().map(f64::from),
-            Self::U8 => word.parse::<u8>().ok().map(f64::from),
-            Self::I16 => word.parse::<i16>().ok().map(f64::from),
-            Self::U16 => word.parse::<u16>().ok().map(f64::from),
-            Self::I32 => word.parse::<i32>().ok().map(f64::from),
-            Self::U32 => word.parse::<u32>().ok().map(f64::from),
-            Self::F32 => word.parse::<f32>().ok().map(f64::from),
-            Self::F64 => word.parse().ok(),
-        }
-    }
-
-    /// Returns the number that [`Type::size`] bytes stand for, the lowest byte first; more bytes are zero.
-    pub(super) fn decoded(self, bytes: [u8; 8]) -> f64 {
-        let [a, b, c, d, ..] = bytes;
-        match self {
-            Self::I8 => f64::from(a as i8),
-            Self::U8 => f64::from(a),
-            Self::I16 => f64::from(i16::from_le_bytes([a, b])),
-            Self::U16 => f64::from(u16::from_le_bytes([a, b])),
-            Self::I32 => f64::from(i32::from_le_bytes([a, b, c, d])),
-            Self::U32 => f64::from(u32::from_le_bytes([a, b, c, d])),
-            Self::F32 => f64::from(f32::from_le_bytes([a, b, c, d])),
-            Self::F64 => f64::from_le_bytes(bytes),
-        }
+    pub(super) fn name(&self) -> &'static str {
+        self.names[0]
     }
 }
 
 /// One number, or a list of them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub(super) enum Shape {
-    One(Type),
-    List { length: Type, of: Type },
+    One(&'static Type),
+    List { length: &'static Type, of: &'static Type },
 }
 
 /// The use of a property.
@@ -100,7 +68,6 @@ pub(super) enum Shape {
 pub(super) enum Use {
     /// A coordinate of a vertex: 0 to 2.
     Coordinate(usize),
-    /// The vertices of a face.
     Corners,
     Unused,
 }
@@ -129,7 +96,7 @@ impl Element {
         let coordinate = COORDINATES.iter().position(|coordinate| *coordinate == name);
         match (self.name.as_str(), shape) {
             ("vertex", Shape::One(_)) => coordinate.map_or(Use::Unused, Use::Coordinate),
-            ("face", Shape::List { of, .. }) if of.is_whole() && CORNERS.contains(&name) => Use::Corners,
+            ("face", Shape::List { of, .. }) if of.is_whole && CORNERS.contains(&name) => Use::Corners,
             _ => Use::Unused,
         }
     }
@@ -157,7 +124,7 @@ impl Draft {
     fn take(&mut self, line: &str) -> std::result::Result<(), (&'static str, String)> {
         const INVALID: &str = "is not a valid line of a PLY header";
         let words: Vec<&str> = line.split_whitespace().collect();
-        let types = || TYPES.map(|(short, long, _)| format!("{short}, {long}")).join(", ");
+        let types = || TYPES.iter().flat_map(|of| of.names).collect::<Vec<_>>().join(", ");
         match words[..] {
             ["comment" | "obj_info", ..] => {}
             ["format", encoding, version] => {
@@ -190,7 +157,7 @@ impl Draft {
                 let shape = match *shape {
                     [of] => Type::named(of).map(Shape::One).ok_or(types()),
                     ["list", length, of] => {
-                        let length = Type::named(length).filter(|length| length.is_whole());
+                        let length = Type::named(length).filter(|length| length.is_whole);
                         length.zip(Type::named(of)).map(|(length, of)| Shape::List { length, of }).ok_or(types())
                     }
                     _ => Err("property TYPE NAME, property list TYPE TYPE NAME".to_string()),

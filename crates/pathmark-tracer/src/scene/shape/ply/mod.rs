@@ -208,7 +208,7 @@ impl<R: Read> Ply<'_, R> {
     /// Reads a number and converts it by `convert`, which refuses it by `None`.
     fn number<T>(
         &mut self,
-        of: Type,
+        of: &Type,
         place: &Place<'_>,
         convert: impl Fn(f64) -> Option<T>,
         allowed: &str,
@@ -217,7 +217,7 @@ impl<R: Read> Ply<'_, R> {
         let is_text = self.encoding == Encoding::Text;
         let word = if is_text { self.next_word() } else { None };
         let number = match &word {
-            Some(word) => of.parsed(&self.line[word.clone()]),
+            Some(word) => (of.parsed)(&self.line[word.clone()]),
             None if is_text => {
                 let problem = format!("has too few numbers: the line ends before {} is complete", property.name);
                 return Err(self.refused(&element.name, &index.to_string(), &problem).into());
@@ -240,8 +240,8 @@ impl<R: Read> Ply<'_, R> {
     }
 
     /// Reads a number of a binary file.
-    fn binary(&mut self, of: Type, element: &Element, index: u64) -> Result<f64> {
-        let size = of.size();
+    fn binary(&mut self, of: &Type, element: &Element, index: u64) -> Result<f64> {
+        let size = of.size;
         let mut bytes = [0; 8];
         // Copies of a constant size are faster. Bytes behind the number are not decoded.
         if let Some(next) = self.file.buffer().first_chunk() {
@@ -256,7 +256,7 @@ impl<R: Read> Ply<'_, R> {
         if self.encoding == Encoding::BigEndian {
             bytes = (u64::from_be_bytes(bytes) >> (64 - 8 * size)).to_le_bytes();
         }
-        Ok(of.decoded(bytes))
+        Ok((of.decoded)(bytes))
     }
 
     /// Reads the rest of the file, for the hash; returns whether it holds more than white space.

@@ -1,4 +1,4 @@
-//! Rays for comparisons of searches: rays of random walks through a scene, and rays close to edges.
+//! Scenes and rays for comparisons of searches: rays of random walks through a scene, and rays close to edges.
 
 use super::rays::Rays;
 use super::search::{in_packets, packet};
@@ -66,4 +66,18 @@ pub(super) fn walks(scene: &Scene, count: usize) -> (Vec<Start>, Vec<Start>) {
 pub(super) fn side_by_side<V: Float>(scene: &Scene, starts: &[Start]) -> Rays<V> {
     let numbers: Vec<V::One> = in_packets(scene, starts, V::LANES).into_iter().map(V::one).collect();
     packet(&numbers)
+}
+
+/// The scene with every primitive twice, so that every hit is a tie.
+pub(super) fn twice(scene: &Scene) -> Scene {
+    let mut twice = scene.clone();
+    let primitives = &mut twice.primitives;
+    let (spheres, planes) = (primitives.spheres.len(), primitives.planes.len());
+    primitives.spheres.extend_from_within(..);
+    primitives.planes.extend_from_within(..);
+    primitives.triangles.extend_from_within(..);
+    let owners = |range: std::ops::Range<usize>| scene.owners[range].repeat(2);
+    let [first, second] = [spheres, spheres + planes];
+    twice.owners = [owners(0..first), owners(first..second), owners(second..scene.owners.len())].concat();
+    twice
 }

@@ -32,7 +32,6 @@ pub(super) fn cross([a, b, c]: &[BigInt; 3], [d, e, f]: &[BigInt; 3]) -> [BigInt
     [b * f - c * e, c * d - a * f, a * e - b * d]
 }
 
-/// The difference.
 pub(super) fn minus([a, b, c]: &[BigInt; 3], [d, e, f]: &[BigInt; 3]) -> [BigInt; 3] {
     [a - d, b - e, c - f]
 }
