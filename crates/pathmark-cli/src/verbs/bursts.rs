@@ -295,7 +295,8 @@ fn table(lines: &[Line], yardstick: &str, row: &BurstRow) -> String {
 }
 
 fn in_words(Estimate { value, interval: Interval { low, high, .. } }: &Estimate) -> String {
-    format!("{value:.2} ({low:.2} to {high:.2})")
+    let digits = if value < 0.1 { 3 } else { 2 };
+    format!("{value:.digits$} ({low:.digits$} to {high:.digits$})")
 }
 
 /// Which pool wakes faster than the yardstick, and what its waiting costs.

@@ -126,10 +126,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(blocks)
 }
 
-/// The result in a line: the error that costs most, if one does so beyond the noise.
+/// The result in a line: the error that certainly costs most, if one does so beyond the noise.
 fn title(lines: &[&Line<'_>], ratio: impl Fn(&Line<'_>) -> Option<Estimate>, of: &str) -> String {
     let beyond = lines.iter().filter_map(|line| Some((line, ratio(line)?))).filter(|(_, ratio)| ratio.interval.low > 1.0);
-    let worst = beyond.max_by(|a, b| a.1.value.total_cmp(&b.1.value));
+    let worst = beyond.max_by(|a, b| a.1.interval.low.total_cmp(&b.1.interval.low));
     worst.map_or_else(
         || format!("No error on purpose raises the {of} beyond the noise"),
         |(line, ratio)| {
