@@ -18,11 +18,15 @@ fn pools_take_turns_in_every_process() {
     assert_eq!(of("strategy"), ["fixed-pool", "rayon", "shared-counter", "fixed-pool", "rayon", "shared-counter"]);
     assert_eq!(of("started"), [0.0, 0.0, 2.0, 0.0, 0.0, 2.0]);
     // The yardstick has no ratio to itself, and without gaps nobody idles in them.
-    assert_eq!(of("wake_ratio").iter().map(Value::is_null).collect::<Vec<_>>(), [false, true, false, false, true, false]);
+    assert_eq!(
+        of("wake_ratio").iter().map(Value::is_null).collect::<Vec<_>>(),
+        [false, true, false, false, true, false]
+    );
     assert_eq!(of("idle_processors").iter().filter(|idle| idle.is_null()).count(), 3);
 
     let mut reader = csv::Reader::from_path(folder.path().join("new/bursts.csv")).unwrap();
-    let rows: Vec<Vec<String>> = reader.records().map(|row| row.unwrap().iter().map(str::to_string).collect()).collect();
+    let rows: Vec<Vec<String>> =
+        reader.records().map(|row| row.unwrap().iter().map(str::to_string).collect()).collect();
     assert_eq!(rows.len(), 3 * 2 * 2 * 3);
     // The first in a round was the last in the round before.
     let first: Vec<&str> = rows.iter().filter(|row| row[2] == "0").map(|row| row[3].as_str()).collect();

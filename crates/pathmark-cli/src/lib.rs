@@ -13,8 +13,8 @@ pub use console::Allocator;
 use console::{Console, watch_memory};
 use pathmark_check as check;
 use pathmark_harness::{
-    analysis, atomic_file, cases_file, cluster, csv_file, error, experiment, files, film, film_file, guard_prices, image_io,
-    input, kernel, lab, lock, material, math, measure, metric, sampling, scene, shell, simd, simulate,
+    analysis, atomic_file, cases_file, cluster, csv_file, error, experiment, files, film, film_file, guard_prices,
+    image_io, input, kernel, lab, lock, material, math, measure, metric, sampling, scene, shell, simd, simulate,
 };
 use pathmark_report::{self as report, plot};
 use std::ffi::OsString;

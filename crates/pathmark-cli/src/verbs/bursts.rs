@@ -140,9 +140,8 @@ fn strategies(arguments: &Arguments, lab: &Lab, threads: NonZeroUsize) -> Result
 fn yardstick<'a>(arguments: &'a Arguments, strategies: &'a [String]) -> Result<&'a str> {
     let named = |name: &str| strategies.iter().find(|own| *own == name).map(String::as_str);
     match &arguments.with {
-        Some(name) => named(name).ok_or_else(|| {
-            InputError::new("with", name, "does not take part").allowed(strategies.join(", ")).into()
-        }),
+        Some(name) => named(name)
+            .ok_or_else(|| InputError::new("with", name, "does not take part").allowed(strategies.join(", ")).into()),
         None => Ok(named(USUAL_YARDSTICK).unwrap_or(&strategies[0])),
     }
 }
@@ -291,19 +290,23 @@ fn table(lines: &[Line], yardstick: &str, row: &BurstRow) -> String {
         )
     };
     let body = lines.iter().map(line);
-    [head, names, under.trim_end().to_string()].into_iter().chain(body).chain([verdict(lines, yardstick)]).collect::<Vec<_>>().join("\n")
+    [head, names, under.trim_end().to_string()]
+        .into_iter()
+        .chain(body)
+        .chain([verdict(lines, yardstick)])
+        .collect::<Vec<_>>()
+        .join("\n")
 }
 
 fn in_words(Estimate { value, interval: Interval { low, high, .. } }: &Estimate) -> String {
-    let digits = if value < 0.1 { 3 } else { 2 };
+    let digits = if *value < 0.1 { 3 } else { 2 };
     format!("{value:.digits$} ({low:.digits$} to {high:.digits$})")
 }
 
 /// Which pool wakes faster than the yardstick, and what its waiting costs.
 fn verdict(lines: &[Line], yardstick: &str) -> String {
     let faster = lines.iter().filter_map(|line| Some((line, line.wake_ratio?)));
-    let fastest =
-        faster.filter(|(_, ratio)| ratio.interval.high < 1.0).min_by(|a, b| a.1.value.total_cmp(&b.1.value));
+    let fastest = faster.filter(|(_, ratio)| ratio.interval.high < 1.0).min_by(|a, b| a.1.value.total_cmp(&b.1.value));
     let Some((line, ratio)) = fastest else {
         return format!("No strategy wakes faster than {yardstick} beyond the noise.\n");
     };

@@ -192,7 +192,8 @@ mod tests {
             assert_eq!(keeps_threads(&lab, name, threads).unwrap(), keeps, "{name}");
         }
         // Two threads for each region, but never more than there are jobs.
-        let started = |jobs| run_bursts(&lab, "shared-counter", Spin { steps_per_s: 0.0 }, bursts(jobs)).unwrap().started;
+        let started =
+            |jobs| run_bursts(&lab, "shared-counter", Spin { steps_per_s: 0.0 }, bursts(jobs)).unwrap().started;
         assert_eq!([started(5), started(1)], [2.0, 1.0]);
     }
 

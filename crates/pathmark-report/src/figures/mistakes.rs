@@ -57,9 +57,12 @@ fn errors(rows: &[&Row], known: f64) -> Vec<f64> {
 }
 
 fn lines<'a>(results: &'a Results, options: &'a Options) -> Result<Vec<Line<'a>>> {
-    let by_threads = gathered(results.by(|row| (row.threads, Kind::of(row))).into_iter().map(
-        |((threads, kind), rows)| (threads, (kind, rows)),
-    ));
+    let by_threads = gathered(
+        results
+            .by(|row| (row.threads, Kind::of(row)))
+            .into_iter()
+            .map(|((threads, kind), rows)| (threads, (kind, rows))),
+    );
     let mut lines = Vec::new();
     for mistake in &options.pair {
         for (&threads, kinds) in &by_threads {
@@ -107,7 +110,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let axis = Axis::log("error of the image's mean / error of the right way");
         let mut plot = plot(title, axis, &errors, |line| line.error.map(Estimated::from));
         plot.subtitle = results.workload();
-        plot.caption = format!("Root mean square over seeds. Bars: {:.0} % by Fisher's F, for normal errors.", 1e2 * LEVEL);
+        plot.caption =
+            format!("Root mean square over seeds. Bars: {:.0} % by Fisher's F, for normal errors.", 1e2 * LEVEL);
         blocks.push(Block::figure("mistakes-error", plot));
     }
     blocks.push(
@@ -128,7 +132,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 
 /// The result in a line: the error that certainly costs most, if one does so beyond the noise.
 fn title(lines: &[&Line<'_>], ratio: impl Fn(&Line<'_>) -> Option<Estimate>, of: &str) -> String {
-    let beyond = lines.iter().filter_map(|line| Some((line, ratio(line)?))).filter(|(_, ratio)| ratio.interval.low > 1.0);
+    let beyond =
+        lines.iter().filter_map(|line| Some((line, ratio(line)?))).filter(|(_, ratio)| ratio.interval.low > 1.0);
     let worst = beyond.max_by(|a, b| a.1.interval.low.total_cmp(&b.1.interval.low));
     worst.map_or_else(
         || format!("No error on purpose raises the {of} beyond the noise"),
@@ -139,12 +144,7 @@ fn title(lines: &[&Line<'_>], ratio: impl Fn(&Line<'_>) -> Option<Estimate>, of:
     )
 }
 
-fn plot(
-    title: String,
-    axis: Axis,
-    lines: &[&Line<'_>],
-    told: impl Fn(&Line<'_>) -> Option<Estimated>,
-) -> DotPlot {
+fn plot(title: String, axis: Axis, lines: &[&Line<'_>], told: impl Fn(&Line<'_>) -> Option<Estimated>) -> DotPlot {
     let threads: BTreeSet<usize> = lines.iter().map(|line| line.threads).collect();
     let rows = lines.chunk_by(|a, b| a.mistake.name == b.mistake.name).map(|own| {
         let dot = |threads: &usize| Some(told(own.iter().find(|line| line.threads == *threads)?)?.dot());
