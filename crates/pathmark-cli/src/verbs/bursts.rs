@@ -7,7 +7,7 @@ use crate::analysis::adjacent_pairs::{by_process, paired_ratio};
 use crate::analysis::quantile::median;
 use crate::analysis::{Estimate, Interval};
 use crate::console::Console;
-use crate::console::output::{print, print_json};
+use crate::console::output::{counted, print, print_json};
 use crate::error::{Error, InputError, Result};
 use crate::experiment::{MACHINE, Progress as _, RunFile, read_run_file};
 use crate::files::{Files, create_folder};
@@ -262,10 +262,10 @@ fn lines(arguments: &Arguments, rows: &[BurstRow], strategies: &[String], yardst
 fn table(lines: &[Line], yardstick: &str, row: &BurstRow) -> String {
     let gap = humantime::format_duration(Duration::from_secs_f64(lines[0].gap_s));
     let head = format!(
-        "gap {gap}, {} jobs of {:.1} us, {} threads; times in us, ratios to {yardstick} with 95 % intervals",
-        row.jobs,
+        "gap {gap}, {} of {:.1} us, {}; times in us, ratios to {yardstick} with 95 % intervals",
+        counted(row.jobs, "job"),
         1e6 * row.job_s,
-        row.threads
+        counted(row.threads, "thread")
     );
     let names = format!(
         "{:>8} {:>8} {:>24} {:>9} {:>6} {:>24} {:>10} {:>8}  strategy",
@@ -303,7 +303,7 @@ fn in_words(Estimate { value, interval: Interval { low, high, .. } }: &Estimate)
     format!("{value:.digits$} ({low:.digits$} to {high:.digits$})")
 }
 
-/// Which pool wakes faster than the yardstick, and what its waiting costs.
+/// The pool that wakes faster than the yardstick, its regions, and the price of its waiting.
 fn verdict(lines: &[Line], yardstick: &str) -> String {
     let faster = lines.iter().filter_map(|line| Some((line, line.wake_ratio?)));
     let fastest = faster.filter(|(_, ratio)| ratio.interval.high < 1.0).min_by(|a, b| a.1.value.total_cmp(&b.1.value));
@@ -314,8 +314,9 @@ fn verdict(lines: &[Line], yardstick: &str) -> String {
         let found = lines.iter().find(|line| line.strategy == name).and_then(|line| line.idle_processors);
         found.map_or_else(|| "an unknown number of".to_string(), |idle| format!("{idle:.2}"))
     };
+    let regions = line.region_ratio.as_ref().map_or_else(|| "an unknown number of".to_string(), in_words);
     format!(
-        "{} wakes fastest, in {} times the time of {yardstick}; waiting keeps {} processors busy, and {} with {yardstick}.\n",
+        "{} wakes fastest, in {} times the time of {yardstick}. Its regions take {regions} times as long. In the gaps it keeps {} processors busy, and {yardstick} keeps {}.\n",
         line.strategy,
         in_words(&ratio),
         idle(&line.strategy),

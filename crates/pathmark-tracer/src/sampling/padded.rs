@@ -1,4 +1,4 @@
-//! A SplitMix64 generator for each thread, each on cache lines of its own: `--sampler padded`.
+//! A `SplitMix64` generator for each thread, each on cache lines of its own: `--sampler padded`.
 //!
 //! The states lie in one array, as in many programs that have an entry for each thread. The distance of two entries keeps
 //! them on different cache lines, so a thread that writes its state takes no line from another one. Beside `unpadded`, which

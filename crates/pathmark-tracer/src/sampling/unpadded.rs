@@ -1,4 +1,4 @@
-//! A SplitMix64 generator for each thread, side by side in memory: `--sampler unpadded`, wrong on purpose.
+//! A `SplitMix64` generator for each thread, side by side in memory: `--sampler unpadded`, wrong on purpose.
 //!
 //! No thread uses the state of another one, and the numbers are as good as those of `padded`. But eight states share a cache
 //! line, and a processor must own a line to write to it: at every number it takes the line from the others (false sharing).
