@@ -40,7 +40,7 @@ impl Sampler for Racy {
 mod tests {
     use super::*;
 
-    /// The first numbers of the authors' generator from the state 1234567, as Rosetta Code's task "SplitMix64" lists them.
+    /// The first numbers of the authors' generator from the state 1234567, as Rosetta Code's task about `SplitMix64` lists them.
     #[test]
     fn one_thread_draws_the_numbers_of_splitmix64() {
         let state = AtomicU64::new(1_234_567);
