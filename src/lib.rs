@@ -35,6 +35,7 @@
 //! | [`lab`] | the tables of all choices: the built-in ones, and those that a program adds |
 //! | [`strategy`] | which worker runs which job, and when; the contract that every strategy keeps |
 //! | [`measure`] | settings, runs, traces, records: runs kernels with strategies and reads the clock |
+//! | [`machine`] | processors and caches of this machine, and the processors on which workers run |
 //! | [`kernel`] | kernels that render a piece of the film; workloads besides the path tracer |
 //! | [`film`] | decomposition of a film into pieces, and sums with the same bits for all of them |
 //! | [`film_file`] | files with the sums of a film, and the scene and settings that they belong to |
@@ -63,8 +64,8 @@ use std::process::ExitCode;
 pub use pathmark_harness::Lab;
 #[doc(inline)]
 pub use pathmark_harness::{
-    analysis, effect, error, estimator, experiment, film, film_file, image_io, kernel, lab, material, math, measure,
-    metric, sampling, scene, simulate, strategy,
+    analysis, effect, error, estimator, experiment, film, film_file, image_io, kernel, lab, machine, material, math,
+    measure, metric, sampling, scene, simulate, strategy,
 };
 #[doc(hidden)]
 pub use pathmark_harness::{atomic_file, cluster, disk, file_id, files, lock, sampler, shell, simd};

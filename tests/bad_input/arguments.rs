@@ -1,6 +1,7 @@
 //! Wrong options on the command line.
 
 use super::refused;
+use crate::program::in_memory;
 
 /// Wrong options of `render cornell`, and the words that the message must contain: field, value, allowed values.
 const WRONG: &[(&[&str], &[&str])] = &[
@@ -17,6 +18,14 @@ const WRONG: &[(&[&str], &[&str])] = &[
     (&["--estimator", "bdsf"], &["did you mean bsdf?"]),
     (&["--output", "pigeon"], &["output", "pigeon", "slots"]),
     (&["--strategy", ""], &["strategy", "work-stealing"]),
+    (&["--pin", "everywhere"], &["pin", "everywhere", "one-per-core", "0-3,8"]),
+    (&["--pin", ""], &["pin", "compact"]),
+    (&["--pin", "3-1"], &["pin", "3-1", "scatter"]),
+    #[cfg(target_os = "linux")]
+    (&["--pin", "60000"], &["pin", "60000", "may not run on processor 60000"]),
+    #[cfg(target_os = "linux")]
+    (&["--pin", "compact", "--threads", "9999"], &["pin", "compact", "of 9999 workers", "up to"]),
+    (&["--counters=perhaps"], &["--counters", "perhaps"]),
     (&["--decomposition", "hexagons"], &["decomposition", "hexagons", "tiles:32x32"]),
     (&["--decomposition", "tiles:0x8"], &["decomposition", "tiles:0x8", "at least 1"]),
     (&["--decomposition", "tiles:8x8:zigzag"], &["decomposition", "zigzag", "hilbert"]),
@@ -106,7 +115,7 @@ const WRONG: &[(&[&str], &[&str])] = &[
 
 #[test]
 fn each_wrong_option_of_render_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     for (options, said) in WRONG {
         println!("{options:?}");
         let small = ["render", "cornell", "-o", "image.png"];
@@ -116,7 +125,7 @@ fn each_wrong_option_of_render_is_refused() {
 
 #[test]
 fn names_that_there_are_not_are_answered_with_those_that_there_are() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let cases: &[(&[&str], &[&str])] = &[
         (&["render", "bathroom"], &["scene", "bathroom", "cornell", ".toml"]),
         (&["image", "reference", "bathroom", "--spp", "4"], &["scene", "bathroom", "cornell"]),
@@ -158,14 +167,14 @@ fn names_that_there_are_not_are_answered_with_those_that_there_are() {
 /// The hidden verb that runs a cell: its input comes from another process, which may be another version.
 #[test]
 fn a_cell_that_is_no_cell_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     refused(folder.path(), &["cell"], 2, &["standard input", "description of a cell"]);
 }
 
 /// Options that a workload would not read are refused, not ignored.
 #[test]
 fn a_workload_takes_no_options_of_light() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     for (option, value) in [
         ("estimator", "mis"),
         ("sampler", "sobol"),
@@ -189,6 +198,6 @@ fn a_workload_takes_no_options_of_light() {
 
 #[test]
 fn a_warning_that_there_is_not_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     refused(folder.path(), &["list", "warnings", "drizzle(25 %)"], 2, &["warning", "drizzle", "drift", "too-short"]);
 }

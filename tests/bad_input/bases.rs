@@ -1,6 +1,7 @@
 //! Scenes with a base, and generators: wrong inheritance, omissions and counts.
 
 use super::{line_of, place, refused};
+use crate::program::in_memory;
 use std::fs;
 use std::path::Path;
 
@@ -10,7 +11,7 @@ const BALL: &str = "[[objects]]\nname = \"ball\"\nshape = { sphere = { center = 
 
 /// Writes the files and renders `scene.toml`; returns the message of the refusal.
 fn refused_scene(files: &[(&str, &str)], said: &[&str]) -> String {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     for (name, text) in files {
         fs::write(folder.path().join(name), text).unwrap();
     }
@@ -93,7 +94,7 @@ fn objects_that_do_not_fit_the_base_are_refused() {
 
 #[test]
 fn numbers_of_generators_are_checked() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     for (scene, allowed) in [
         ("spheres:0", "1 to 10000000"),
         ("spheres:-1", "1 to 10000000"),

@@ -1,7 +1,7 @@
 //! Input that is refused before any work: each of these commands would otherwise render for hours or read without end.
 
 use super::experiment::{TINY, write_tiny};
-use super::program::{finish, pathmark};
+use super::program::{finish, in_memory, pathmark};
 use super::refused;
 use std::ffi::{OsStr, OsString};
 use std::fs;
@@ -16,7 +16,7 @@ const RUN: [&str; 4] = ["run", "tiny.toml", "--out", "out"];
 
 #[test]
 fn a_picture_of_a_size_that_its_format_lacks() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let arguments = [&LONG[..], &["--size", "32768x8", "-o", "a.hdr"]].concat();
     refused(folder.path(), &arguments, 2, &["size = 32768x8", "hdr"]);
 }
@@ -24,7 +24,7 @@ fn a_picture_of_a_size_that_its_format_lacks() {
 /// A scene's name is part of the names of references, images and traces.
 #[test]
 fn a_name_too_long_for_the_files_to_come() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let scene = format!("{}.toml", "x".repeat(220));
     fs::write(folder.path().join(&scene), "about = 'a test'\nbase = 'cornell'\n").unwrap();
     let reference = ["image", "reference", &scene, "--spp", "16000000", "--out", "."];
@@ -34,7 +34,7 @@ fn a_name_too_long_for_the_files_to_come() {
         TINY.replace("[matrix]", "keep = [\"images\"]\n\n[matrix]").replace("spp = [4]", "spp = [16000000]"),
         TINY.replace("[matrix]", "keep = [\"traces\"]\n\n[matrix]").replace("spp = [4]", "spp = [16000000]"),
     ] {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = in_memory();
         fs::write(folder.path().join(&scene), "about = 'a test'\nbase = 'cornell'\n").unwrap();
         write_tiny(folder.path(), &text.replace("\"cornell\"", &format!("\"{scene}\"")));
         refused(folder.path(), &RUN, 2, &["xxx", "up to 255 bytes"]);
@@ -44,7 +44,7 @@ fn a_name_too_long_for_the_files_to_come() {
 /// The cells' processes receive the output folder as JSON.
 #[test]
 fn a_folder_whose_name_is_no_text() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     write_tiny(folder.path(), &TINY.replace("[quick]\n", REFERENCE));
     let out = OsString::from_vec(b"out-\xff".to_vec());
     let arguments = [OsStr::new("run"), OsStr::new("tiny.toml"), OsStr::new("--out"), &out];
@@ -53,7 +53,7 @@ fn a_folder_whose_name_is_no_text() {
 
 #[test]
 fn a_curve_that_cannot_be_rendered_in_rounds() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let text = TINY.replace("[matrix]\n", "[matrix]\ncurve = true\nclamp = [\"subpixel\"]\n");
     write_tiny(folder.path(), &text.replace("[quick]\n", REFERENCE));
     refused(folder.path(), &RUN, 2, &["tiny.toml:", "clamp", "subpixel", "rounds"]);
@@ -62,7 +62,7 @@ fn a_curve_that_cannot_be_rendered_in_rounds() {
 /// Two programs with one name would write rows that cannot be told apart.
 #[test]
 fn two_other_programs_of_one_name() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let external = |program: &str| {
         let command = format!("command = [\"{program}\", \"{{out}}\", \"{{spp}}\", \"{{seed}}\"]\n");
         format!("[[external]]\nname = \"other\"\nscene = \"cornell\"\nspp = [8]\nseed = [3]\n{command}")
@@ -75,7 +75,7 @@ fn two_other_programs_of_one_name() {
 /// A job of a long run, and interruptions so short that there would be billions of them.
 #[test]
 fn noise_that_takes_for_ever_to_draw() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let render = ["render", "cornell", "--size", "8x8", "--spp", "4", "--strategy", "serial", "--trace", "run.csv"];
     finish(pathmark(folder.path(), &render)).with_code(0);
     let text = fs::read_to_string(folder.path().join("run.csv")).unwrap();
@@ -90,7 +90,7 @@ fn noise_that_takes_for_ever_to_draw() {
 /// Files that never end and paths that are no files, under a memory limit that an unbounded reader would reach.
 #[test]
 fn files_without_an_end() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     fs::write(folder.path().join("zero.toml"), "about = 'a test'\nbase = '/dev/zero'\n").unwrap();
     fs::write(folder.path().join("nul.toml"), "about = 'a test'\nbase = \"a\\u0000.toml\"\n").unwrap();
     let mesh = |file: &str| {
@@ -126,7 +126,7 @@ fn files_without_an_end() {
 /// Help that cannot be written is a failure like any other output; a reader that stops early causes none.
 #[test]
 fn help_onto_a_full_disk() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     for arguments in [&["--help"][..], &["--version"], &["render", "--help"], &["list"]] {
         let mut command: Command = pathmark(folder.path(), arguments);
         command.stdout(fs::File::options().write(true).open("/dev/full").unwrap());

@@ -1,7 +1,7 @@
 //! Pathmark's own files in a state that no complete run leaves: after a crash, a full disk or a second run.
 
 use super::experiment::{TINY, write_tiny};
-use super::program::{finish, pathmark};
+use super::program::{finish, in_memory, pathmark};
 use super::refused;
 use pathmark::experiment::experiments;
 use pathmark::measure::SCHEMA;
@@ -14,7 +14,7 @@ const RESUME: [&str; 5] = ["run", "tiny.toml", "--out", "out", "--resume"];
 
 /// A folder with `tiny.toml` and a run's results in `out`, and the path of the rows.
 fn after_a_run() -> (tempfile::TempDir, PathBuf) {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     write_tiny(folder.path(), TINY);
     finish(pathmark(folder.path(), &RUN)).with_code(0);
     let records = folder.path().join("out/tiny/records.csv");
@@ -29,7 +29,7 @@ fn films(folder: &Path) -> Vec<PathBuf> {
 
 #[test]
 fn a_damaged_reference_is_refused_and_kept() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let text = TINY.replace("[quick]\n", "[reference]\nestimator = \"bsdf\"\n\n[quick]\nreference-spp = 40\n");
     write_tiny(folder.path(), &text);
     let reference = ["image", "reference", "cornell", "--size", "24x16", "--spp", "40", "--out", "out/references"];
@@ -164,7 +164,7 @@ fn a_part_with_a_forged_size_takes_no_memory() {
     const MERGE: [&str; 5] = ["merge", "part.film", "--partial", "-o", "image.pfm"];
     let size = "\"width\":33,\"height\":17";
     for by in ["tiles", "samples"] {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = in_memory();
         let options = ["render", "cornell", "--size", "33x17", "--spp", "32", "--shard", "1/2", "--shard-by", by];
         finish(pathmark(folder.path(), &[&options[..], &["-o", "part.film"]].concat())).with_code(0);
         let whole = fs::read(folder.path().join("part.film")).unwrap();
@@ -262,7 +262,7 @@ fn a_damaged_machine_or_definition_is_refused_at_its_place() {
 
 /// Waits until a running sweep has its records file, and asserts that the `second` commands are refused.
 fn second_is_refused(first: &[&str], second: &[&[&str]], records: &str, said: &str) {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     write_tiny(folder.path(), &TINY.replace("spp = [4]", "spp = [4000]"));
     let mut sweep = pathmark(folder.path(), first).spawn().unwrap();
     let records = folder.path().join(records);

@@ -1,6 +1,6 @@
 //! Scenes with a wrong mesh file, and one whose mesh file only looks wrong.
 
-use super::program::{finish, pathmark};
+use super::program::{finish, in_memory, pathmark};
 use super::{place, refused};
 use std::fs;
 
@@ -41,7 +41,7 @@ const WRONG: &[(&str, &str, usize, &[&str])] = &[
 ];
 
 fn folder(scene: &str, obj: Option<&[u8]>) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     fs::write(folder.path().join("mesh.toml"), scene).unwrap();
     if let Some(obj) = obj {
         fs::write(folder.path().join("thing.obj"), obj).unwrap();

@@ -1,6 +1,6 @@
 //! Outputs that cannot be written are refused before anything is rendered.
 
-use super::program::{finish, pathmark, wait};
+use super::program::{finish, in_memory, pathmark, wait};
 use super::{refused, snapshot};
 use std::fs::{self, File};
 use std::io::Read;
@@ -11,7 +11,7 @@ const LONG: [&str; 4] = ["render", "cornell", "--spp", "4000000"];
 
 #[test]
 fn an_output_that_cannot_be_is_refused_before_rendering() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     fs::write(folder.path().join("file"), "kept").unwrap();
     fs::create_dir(folder.path().join("folder.png")).unwrap();
     let long = format!("{}.png", "x".repeat(300));
@@ -46,7 +46,7 @@ fn an_output_that_cannot_be_is_refused_before_rendering() {
 #[cfg(target_os = "linux")]
 #[test]
 fn refusals_of_the_system_are_system_errors() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     refused(folder.path(), &[LONG.as_slice(), &["-o", "/proc/image.png"]].concat(), 3, &["writing /proc/image.png"]);
     let cases: &[&[&str]] = &[
         &["run", "thread-scaling", "--out", "/proc/new"],
@@ -60,7 +60,7 @@ fn refusals_of_the_system_are_system_errors() {
 
 #[test]
 fn an_output_folder_that_is_a_file_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     fs::write(folder.path().join("file"), "kept").unwrap();
     let cases: &[&[&str]] = &[
         &["run", "thread-scaling", "--out", "file"],
@@ -87,6 +87,7 @@ fn files_of_others_in_a_folder_of_results_are_kept() {
         ("out/tiny/notes.txt", run),
         ("out/tiny/machine.toml", &["run", "tiny.toml", "--out", "out", "--resume"]),
         ("out/report.html", &["reproduce", "--out", "out"]),
+        ("out/doctor.json", &["reproduce", "--out", "out"]),
         ("out/guards/machine.toml", &["reproduce", "--out", "out", "--resume"]),
         ("out/report.html", check),
         ("out/guards/guards.csv", check),
@@ -105,7 +106,7 @@ fn files_of_others_in_a_folder_of_results_are_kept() {
     ];
     for (file, arguments) in cases {
         println!("{arguments:?} beside {file}");
-        let folder = tempfile::tempdir().unwrap();
+        let folder = in_memory();
         super::experiment::write_tiny(folder.path(), super::experiment::TINY);
         std::os::unix::fs::symlink(".", folder.path().join("upper")).unwrap();
         let path = folder.path().join(file);
@@ -120,7 +121,7 @@ fn files_of_others_in_a_folder_of_results_are_kept() {
         refused(folder.path(), arguments, 2, &["out"]);
     }
     // An experiment that would be replaced by its copy.
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     fs::create_dir(folder.path().join("experiment")).unwrap();
     fs::write(folder.path().join("experiment/experiment.toml"), super::experiment::TINY).unwrap();
     refused(folder.path(), &["run", "experiment/experiment.toml", "--out", "."], 2, &["the experiment", "overwritten"]);
@@ -129,7 +130,7 @@ fn files_of_others_in_a_folder_of_results_are_kept() {
 /// The program may replace its own files: the page of an earlier run.
 #[test]
 fn pages_of_its_own_are_drawn_again() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     super::experiment::write_tiny(folder.path(), super::experiment::TINY);
     finish(pathmark(folder.path(), &["run", "tiny.toml", "--out", "out"])).with_code(0);
     fs::rename(folder.path().join("out/tiny"), folder.path().join("out/before")).unwrap();
@@ -140,14 +141,14 @@ fn pages_of_its_own_are_drawn_again() {
 /// An existing file stays unchanged when the command is refused for another reason.
 #[test]
 fn a_refused_render_leaves_the_old_image() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     fs::write(folder.path().join("image.png"), "an old image").unwrap();
     refused(folder.path(), &["render", "cornell", "-o", "image.png", "--spp", "6"], 2, &["spp"]);
 }
 
 #[test]
 fn images_that_cannot_be_compared_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     for (size, image) in [("8x8", "a.pfm"), ("8x4", "b.pfm")] {
         let arguments = ["render", "cornell", "--size", size, "--spp", "4", "-o", image];
         finish(pathmark(folder.path(), &arguments)).with_code(0);
@@ -183,7 +184,7 @@ fn images_that_cannot_be_compared_are_refused() {
 /// `pathmark list | head -1`.
 #[test]
 fn a_reader_that_has_seen_enough_is_no_failure() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let cases: [&[&str]; 4] = [&["list"], &["list", "--json"], &["list", "strategies"], &["--help"]];
     for arguments in cases {
         let mut child = pathmark(folder.path(), arguments).spawn().unwrap();
@@ -203,7 +204,7 @@ fn a_reader_that_has_seen_enough_is_no_failure() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_behind_standard_output_is_the_systems() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let cases: [&[&str]; 3] = [
         &["list"],
         &["list", "scenes", "--json"],

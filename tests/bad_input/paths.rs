@@ -1,7 +1,7 @@
 //! Paths that lead nowhere or to another kind of file, and names that could control a terminal.
 
 use super::experiment::{TINY, write_tiny};
-use super::program::{finish, pathmark};
+use super::program::{finish, in_memory, pathmark};
 use super::{place, refused};
 use std::ffi::{OsStr, OsString};
 use std::fs;
@@ -9,7 +9,7 @@ use std::os::unix::ffi::OsStringExt;
 
 /// An existing file of zeros stands for a picture.
 fn folder() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     fs::write(folder.path().join("box.png"), [0x89, b'P', b'N', b'G', 0xff]).unwrap();
     folder
 }
@@ -72,7 +72,7 @@ fn pipes_are_refused() {
 /// The path of a picture is bytes; a scene's name is kept in rows as text.
 #[test]
 fn paths_need_not_be_text() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let name = |ending: &str| OsString::from_vec([b"a\xff", ending.as_bytes()].concat());
     let render = ["render", "cornell", "--size", "4x4", "--spp", "4", "--trace"].map(OsString::from);
     let render: Vec<OsString> = render.into_iter().chain([name(".csv"), "-o".into(), name(".pfm")]).collect();
@@ -92,7 +92,7 @@ fn paths_need_not_be_text() {
 /// A byte order mark is no part of a definition: places count without it.
 #[test]
 fn a_byte_order_mark_is_no_part_of_a_definition() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let wrong = TINY.replace("title = \"Tiny\"", "title = 7");
     for mark in ["", "\u{feff}"] {
         write_tiny(folder.path(), &format!("{mark}{wrong}"));
@@ -107,7 +107,7 @@ fn a_byte_order_mark_is_no_part_of_a_definition() {
 /// Values, keys and names of files reach the terminal escaped, in errors and in remarks.
 #[test]
 fn control_characters_are_escaped() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let red = "\\u001b[31mred\\u0007";
     let scene = |more: &str| format!("about = 'a'\nbase = 'cornell'\n{more}\n");
     let quad = "{ quad = { corners = [[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [9.0, 9.0, 4.0], [0.0, 9.0, 0.0]] } }";

@@ -1,6 +1,6 @@
 //! Invalid trace files, and options of `simulate` and `trace` that make no sense.
 
-use super::program::{finish, pathmark};
+use super::program::{finish, in_memory, pathmark};
 use super::refused;
 use std::fs;
 
@@ -9,7 +9,7 @@ const RENDER: [&str; 10] =
 
 #[test]
 fn a_damaged_trace_is_refused_with_its_line() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     finish(pathmark(folder.path(), &RENDER)).with_code(0);
     let path = folder.path().join("run.csv");
     let whole = fs::read_to_string(&path).unwrap();
@@ -41,7 +41,7 @@ fn a_damaged_trace_is_refused_with_its_line() {
 /// The settings in a trace are run to predict this machine. They are checked before anything is written.
 #[test]
 fn a_trace_that_asks_for_too_many_jobs_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     finish(pathmark(folder.path(), &RENDER)).with_code(0);
     let path = folder.path().join("run.csv");
     let text = fs::read_to_string(&path).unwrap();
@@ -52,7 +52,7 @@ fn a_trace_that_asks_for_too_many_jobs_is_refused() {
 
 #[test]
 fn options_that_make_no_sense_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     finish(pathmark(folder.path(), &RENDER)).with_code(0);
     let cases: [(&[&str], &[&str]); 12] = [
         (&["--noise", "0.5:1e-9"], &["noise", "0.5:1e-9", "0.001 ms"]),
@@ -79,21 +79,21 @@ fn options_that_make_no_sense_are_refused() {
 /// A render that could not write its trace is refused before it starts.
 #[test]
 fn a_trace_that_cannot_be_written_is_refused_at_once() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let arguments = ["render", "cornell", "--trace", "no/such/folder/run.csv"];
     refused(folder.path(), &arguments, 2, &["no/such/folder/run.csv", "does not exist"]);
 }
 
 #[test]
 fn references_need_a_deterministic_sampler() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let arguments = ["image", "reference", "cornell", "--spp", "4", "--sampler", "per-thread"];
     refused(folder.path(), &arguments, 2, &["sampler", "per-thread", "independent"]);
 }
 
 #[test]
 fn split_samples_and_the_subpixel_clamp_exclude_each_other() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let arguments = ["render", "cornell", "--clamp", "subpixel", "--decomposition", "samples:16"];
     refused(folder.path(), &arguments, 2, &["decomposition", "samples:16", "clamp"]);
 }

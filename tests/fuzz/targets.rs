@@ -58,7 +58,16 @@ pub(crate) const TARGETS: &[Target] = &[
         words: SCENE_WORDS,
         ..TARGET
     },
-    Target { name: "mesh", file: "thing.obj", prepare: scene_with_a_mesh, read: mesh, words: MESH_WORDS, ..TARGET },
+    Target {
+        name: "mesh",
+        file: "thing.obj",
+        prepare: scene_with_a_mesh,
+        read: mesh,
+        words: MESH_WORDS,
+        // These take ten times as long as most.
+        mutations: 4000,
+        ..TARGET
+    },
     Target { name: "ply", file: "thing.ply", prepare: scene_with_a_ply_mesh, read: mesh, words: PLY_WORDS, ..TARGET },
     Target {
         name: "experiment",

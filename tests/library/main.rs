@@ -22,6 +22,8 @@ mod metric;
 mod mistakes;
 mod pairing;
 mod peer;
+#[cfg(target_os = "linux")]
+mod pinning;
 mod png_chunks;
 mod properties;
 mod prose;

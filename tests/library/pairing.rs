@@ -13,11 +13,6 @@ const PAIRED: &str = "rows/paired.rs";
 /// Divisions of other values: the file, the reason, and each division as it is written.
 const EXCEPTIONS: &[(&str, &str, &[&str])] = &[
     (
-        "page/benches.rs",
-        "criterion measures each case in a row of its own, without repetitions; the ends of intervals are paired crosswise",
-        &["other.median_s / self.median_s", "other.low_s / self.high_s", "other.high_s / self.low_s"],
-    ),
-    (
         "claims/judge.rs",
         "conditions of a claim: samples or pixels asked for and run",
         &["own.parse::<f64>().ok()? / wanted"],
@@ -50,7 +45,7 @@ const EXCEPTIONS: &[(&str, &str, &[&str])] = &[
     (
         "figures/pairs.rs",
         "fitted variances, and geometric means of seconds over the same seeds, whose ratio is the mean of the pairs' ratios",
-        &["variance(first)? / variance(best)?", "seconds_per_spp.value / first.renderer"],
+        &["first.variance()? / best.variance()?", "seconds_per_spp.value / first.renderer"],
     ),
     (
         "figures/rmse_against_time.rs",

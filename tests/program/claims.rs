@@ -1,14 +1,14 @@
 //! `pathmark claims`: verdicts from a folder of results.
 
 use crate::experiment::{TINY, write_tiny};
-use crate::program::{finish, pathmark};
+use crate::program::{finish, in_memory, pathmark};
 use crate::snapshot::{assert_untouched, snapshot};
 use std::fs;
 use std::path::Path;
 
 /// A folder whose `out` has the rows of a small experiment under the name of a large one.
 fn with_rows() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     write_tiny(folder.path(), TINY);
     fs::rename(folder.path().join("tiny.toml"), folder.path().join("thread-scaling.toml")).unwrap();
     finish(pathmark(folder.path(), &["run", "thread-scaling.toml", "--out", "out"])).with_code(0);

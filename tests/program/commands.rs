@@ -1,6 +1,6 @@
 //! The commands in the documents run as printed there.
 
-use crate::program::{finish, pathmark};
+use crate::program::{finish, in_memory, pathmark};
 use std::fs;
 use std::process::Command;
 
@@ -22,7 +22,7 @@ fn the_commands_of_the_readme_run() {
         "pathmark run granularity --baseline",
         "pathmark VERB",
     ];
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let mut commands = 0;
     let text = include_str!("../../README.md");
     for line in blocks(text).into_iter().filter(|(language, _)| *language == "sh").flat_map(|(_, block)| block.lines())
@@ -49,11 +49,11 @@ fn the_commands_of_the_readme_run() {
     assert!(commands > 10, "{commands} commands");
 }
 
-/// As printed, except that experiments run in a small size and the simulation skips its check of this machine.
+/// As printed, except that images are small and the simulation skips its check of this machine.
 #[test]
 fn every_command_of_the_tutorial_runs() {
     let text = include_str!("../../docs/tutorial.md");
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let mut commands = 0;
     for (language, block) in blocks(text) {
         match language {
@@ -63,10 +63,12 @@ fn every_command_of_the_tutorial_runs() {
             }
             "sh" => {
                 for line in block.lines() {
-                    let mut words: Vec<&str> = line.split_whitespace().collect();
+                    let small = line.replace("160x120", "40x30").replace("64x48", "16x12");
+                    let mut words: Vec<&str> = small.split_whitespace().collect();
                     assert_eq!(words[0], "pathmark", "{line}");
                     match words[1] {
-                        "run" => words.extend(["--set", "size=64x48"]),
+                        "run" => words.extend(["--set", "size=16x12"]),
+                        "render" if !small.contains("--size") => words.extend(["--size", "64x48"]),
                         "simulate" => words.push("--no-check"),
                         _ => (),
                     }
@@ -89,7 +91,7 @@ fn every_command_of_the_tutorial_runs() {
 /// The programs of docs/data.md draw a figure from rows. Each runs if its language and packages are installed.
 #[test]
 fn the_programs_that_read_rows_draw_a_figure() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let probes = [
         ("python", "python3", ["-c", "import pandas, matplotlib"], ["program.py"]),
         ("r", "Rscript", ["-e", "0"], ["program.r"]),

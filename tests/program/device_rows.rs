@@ -1,7 +1,7 @@
 //! Device rows of a sweep: a GPU that is missing, and the times of a device that is there.
 
 use crate::experiment::{TINY, write_tiny};
-use crate::program::{finish, pathmark};
+use crate::program::{finish, in_memory, pathmark};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -24,7 +24,7 @@ fn run(folder: &Path, kernels: &str) -> Vec<Row> {
 /// GPU.
 #[test]
 fn a_gpu_that_is_not_there_is_a_row() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let rows = run(folder.path(), "\"scalar\", \"lanes\", \"device\"");
     assert_eq!(rows.len(), 9);
     for row in rows {
@@ -42,7 +42,7 @@ fn a_gpu_that_is_not_there_is_a_row() {
 /// Compilation and copying are reported separately; both are part of the build time.
 #[test]
 fn rows_of_a_device_tell_how_long_it_took_to_compile_and_to_copy() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let rows = run(folder.path(), "\"scalar\", \"device:host\"");
     assert_eq!(rows.len(), 6);
     for row in rows {

@@ -252,7 +252,7 @@ fn two_builds_are_measured_in_turns() {
     write_script(&script, &fails);
     let finished = run(folder.path(), &["run", "tiny.toml", "--baseline", "./other", "--out", "new"], 1);
     assert!(finished.err.contains("15 of"), "{}", finished.err);
-    assert_eq!(rows("new/tiny").len(), 15);
+    assert_eq!(rows("new/tiny").len(), 5 * 3 * 2);
 }
 
 /// Instructions are counted beside the rows; counts that differ by a thousandth or less are equal. Without valgrind the
@@ -261,7 +261,8 @@ fn two_builds_are_measured_in_turns() {
 fn instructions_are_counted_and_compared() {
     let folder = tempfile::tempdir().unwrap();
     write_tiny(folder.path(), TINY);
-    let count = ["run", "tiny.toml", "--repetitions", "1", "--filter", "threads=1", "--count-instructions", "--out"];
+    let count =
+        ["run", "tiny.toml", "--repetitions", "1", "--filter", "strategy=serial", "--count-instructions", "--out"];
     if Command::new("valgrind").arg("--version").output().is_err() {
         println!("no valgrind: instructions are not counted");
         let refused = run(folder.path(), &[&count[..], &["none"]].concat(), 3);

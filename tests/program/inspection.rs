@@ -3,7 +3,7 @@
 //!
 //! Levels are family-wise 1e-3 (Sidak) within each test, two-sided.
 
-use crate::program::{finish, pathmark};
+use crate::program::{finish, in_memory, pathmark};
 use crate::scene_text::{Ball, load_scene};
 use pathmark::analysis::z_test::{critical_value, sidak};
 use pathmark::film::{Bounds, Piece, TileBuffer};
@@ -196,7 +196,7 @@ fn a_closed_sphere_gives_each_bounce_its_power() {
 }
 
 fn run(arguments: &[&str], code: i32) -> (String, String) {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let finished = finish(pathmark(folder.path(), arguments)).with_code(code);
     (finished.out, finished.err)
 }
@@ -229,7 +229,7 @@ fn a_path_is_printed() {
 
 #[test]
 fn bounces_are_printed_and_written() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let arguments = ["inspect", "bounces", "cornell", "--size", "32x24", "--spp", "4", "--csv", "rows.csv"];
     let text = finish(pathmark(folder.path(), &arguments)).with_code(0).out;
     assert!(text.contains("end before 6 bounces"), "{text}");
@@ -271,7 +271,7 @@ fn traces_that_cannot_be_replayed_are_refused() {
 /// finite.
 #[test]
 fn rays_are_searched_alone_and_exported() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let size = ["--size", "24x16", "--estimator", "bsdf", "--spp", "2", "--repetitions", "2", "--json"];
     let json = |more: &[&str]| -> Value {
         let arguments = [&["inspect", "rays", "bumpy-ball:500"][..], &size, more].concat();
@@ -308,7 +308,7 @@ fn rays_are_searched_alone_and_exported() {
 /// shows such a sample again.
 #[test]
 fn a_told_command_shows_the_invalid_sample_on_every_axis() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let scene = "about = 'a test'\nbase = 'cornell'\n[[objects]]\nname = 'light'\nemission = [1e39, 1e39, 1e39]\n";
     std::fs::write(folder.path().join("bright.toml"), scene).unwrap();
     let axes: [&[&str]; 8] = [
@@ -370,7 +370,7 @@ fn single_precision_is_looked_into_as_far_as_it_can_be() {
 /// Equal images have an infinite PSNR. JSON has no number for it, and it must differ from an absent value.
 #[test]
 fn infinity_is_told_from_nothing_in_json() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let render = ["render", "cornell", "--size", "32x24", "--spp", "4", "-o", "a.pfm", "--json"];
     let record: Value = serde_json::from_str(&finish(pathmark(folder.path(), &render)).with_code(0).out).unwrap();
     assert!(record["rmse"].is_null() && record["mean_radiance"].is_number(), "{record}");
@@ -382,7 +382,7 @@ fn infinity_is_told_from_nothing_in_json() {
 /// A trace keeps the warnings about its run's times, for a reader on another day.
 #[test]
 fn a_trace_tells_doubts_about_its_times() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let render = ["render", "cornell", "--size", "24x16", "--spp", "4", "--strategy", "serial", "--trace", "run.csv"];
     finish(pathmark(folder.path(), &render)).with_code(0);
     let path = folder.path().join("run.csv");

@@ -1,6 +1,7 @@
 //! `diff`: cells and experiments that the new measurement lost, and names that a terminal would obey.
 
 use crate::diff::{base, json, measured, run, steady};
+use crate::program::in_memory;
 use std::fs;
 use std::path::Path;
 
@@ -32,7 +33,7 @@ fn told<'a>(text: &'a str, before: &str) -> Vec<&'a str> {
 
 #[test]
 fn cells_that_vanished_make_the_comparison_fail() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     base(folder.path());
     changed(folder.path(), "old", "fewer", |column, row| row[column("strategy")] != "work-stealing");
     for options in [&[][..], &["--undecided", "fail"], &["--counts"]] {
@@ -52,7 +53,7 @@ fn cells_that_vanished_make_the_comparison_fail() {
 
 #[test]
 fn cells_that_failed_make_the_comparison_fail() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     base(folder.path());
     let failing = |name: &str, is_failed: &dyn Fn(&str, u32) -> bool| {
         changed(folder.path(), "old", name, |column, row| {
@@ -101,7 +102,7 @@ fn cells_that_failed_make_the_comparison_fail() {
 /// Two folders of `--out` are compared experiment by experiment, with one error probability for all.
 #[test]
 fn folders_of_experiments_are_compared_by_name() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     base(folder.path());
     for (name, factor) in [("one/a", 1.0), ("one/b", 1.0), ("two/a", 1.0), ("two/b", 1.2), ("two/c", 1.0)] {
         measured(folder.path(), name, |cell, repetition| factor * steady(cell, repetition));
@@ -149,7 +150,7 @@ fn json_of(text: &str) -> serde_json::Value {
 /// A name that would clear the screen, hide text or begin a line of the table is shown with its escapes.
 #[test]
 fn a_terminal_obeys_no_name() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     base(folder.path());
     let hostile = |from: &str, to: &str| {
         changed(folder.path(), from, to, |column, row| {

@@ -34,4 +34,5 @@ mod time_limits;
 mod until;
 #[path = "../support/watchdog.rs"]
 mod watchdog;
+mod why;
 mod with_values;

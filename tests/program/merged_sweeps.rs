@@ -1,7 +1,7 @@
 //! `run --shard` and `merge`: one sweep from several machines.
 
 use crate::experiment::{TINY, write_tiny};
-use crate::program::{finish, pathmark};
+use crate::program::{finish, in_memory, pathmark};
 use pathmark::measure::SCHEMA;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -30,7 +30,7 @@ fn rows(folder: &Path) -> BTreeMap<String, (BTreeSet<u32>, String)> {
 
 #[test]
 fn parts_of_a_sweep_are_its_rows() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     write_tiny(folder.path(), TINY);
     run(folder.path(), &["run", "tiny.toml", "--out", "whole"], 0);
     let whole = rows(&folder.path().join("whole"));
@@ -58,7 +58,7 @@ fn parts_of_a_sweep_are_its_rows() {
 /// Serial cells of one image are baselines of each other; without other cells each belongs to one part only.
 #[test]
 fn parts_of_serial_cells_do_not_overlap() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let serial = TINY
         .replace(r#"["serial", "static-blocks", "work-stealing"]"#, r#"["serial"]"#)
         .replace("threads = [1, 2]", "threads = [1]")
@@ -82,7 +82,7 @@ fn parts_of_serial_cells_do_not_overlap() {
 
 #[test]
 fn parts_that_make_no_sweep_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     write_tiny(folder.path(), TINY);
     for (shard, out) in [("1/3", "a"), ("2/3", "b"), ("1/2", "c")] {
         run(folder.path(), &["run", "tiny.toml", "--shard", shard, "--repetitions", "1", "--out", out], 0);
@@ -121,7 +121,7 @@ fn two_parts(folder: &Path) {
 /// rows if they held for any part, and rows have a pair only if all parts gave them one.
 #[test]
 fn a_goal_of_one_part_is_a_goal_of_the_sweep() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     two_parts(folder.path());
     let described = |out: &str| folder.path().join(out).join("tiny/machine.toml");
     let [first, second] = ["a", "b"].map(|out| fs::read_to_string(described(out)).unwrap());
@@ -152,7 +152,7 @@ fn a_goal_of_one_part_is_a_goal_of_the_sweep() {
 /// A part without rows, or with fewer than its sweep has when it is finished, is missing.
 #[test]
 fn an_unfinished_part_of_a_sweep_is_missing() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     two_parts(folder.path());
     let records = folder.path().join("b/tiny/records.csv");
     let whole = fs::read_to_string(&records).unwrap();
@@ -187,7 +187,7 @@ type Damage = fn(&str) -> String;
 /// After a refusal nothing is in the way of another attempt with mended parts.
 #[test]
 fn a_refused_merge_leaves_nothing() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     two_parts(folder.path());
     let damages: [(&str, Damage, &str); 4] = [
         ("b/tiny/records.csv", |text| text.replacen(&format!("\n{SCHEMA},"), "\nx,", 1), "records.csv:2:"),

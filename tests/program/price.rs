@@ -1,10 +1,10 @@
 //! The price of an accuracy: the prediction, and whether the render at that price has the predicted accuracy.
 
-use crate::program::{Finished, finish, pathmark};
+use crate::program::{Finished, finish, in_memory, pathmark};
 use serde_json::Value;
 
 fn price(arguments: &[&str]) -> Finished {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     finish(pathmark(folder.path(), &[&["price", "cornell", "--quiet"], arguments].concat()))
 }
 
@@ -109,7 +109,7 @@ fn renders_without_a_price_are_refused() {
 /// An estimator that needs no more may have a pilot of one sample, even beside estimators that need more.
 #[test]
 fn a_short_pilot_is_compared_with_estimators_that_need_more() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let arguments =
         ["price", "spheres:50", "--size", "16x12", "--rmse", "1", "--estimator", "bsdf", "--pilot-spp", "1"];
     let priced = finish(pathmark(folder.path(), &arguments)).with_code(0);

@@ -2,6 +2,7 @@
 
 use crate::diff::{base, json, measured, run, steady};
 use crate::experiment::{TINY, write_tiny};
+use crate::program::in_memory;
 use serde_json::Value;
 use std::fs;
 
@@ -17,7 +18,7 @@ fn times(cell: &str, repetition: u32) -> f64 {
 
 #[test]
 fn schedules_of_one_speed_share_a_group_and_others_do_not() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     base(folder.path());
     measured(folder.path(), "ranked", times);
     let found = json(&run(folder.path(), &["rank", "ranked", "--json"], 0));
@@ -42,7 +43,7 @@ fn schedules_of_one_speed_share_a_group_and_others_do_not() {
 
 #[test]
 fn filters_leave_fewer_schedules_and_few_repetitions_tell_how_many_are_needed() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     base(folder.path());
     let two = json(&run(folder.path(), &["rank", "base/tiny", "--filter", "threads=2", "--json"], 0));
     assert_eq!(two["images"][0]["places"].as_array().unwrap().len(), 2);
@@ -54,7 +55,7 @@ fn filters_leave_fewer_schedules_and_few_repetitions_tell_how_many_are_needed() 
 
 #[test]
 fn folders_without_a_ranking_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     base(folder.path());
     let refused = |arguments: &[&str], said: &str| {
         let finished = run(folder.path(), &[&["rank"], arguments].concat(), 2);
@@ -71,7 +72,7 @@ fn folders_without_a_ranking_are_refused() {
 /// and the serial run in both.
 #[test]
 fn parts_of_a_sweep_are_ranked_apart_and_list_every_schedule() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     write_tiny(folder.path(), TINY);
     for (shard, out) in [("1/2", "a"), ("2/2", "b")] {
         run(folder.path(), &["run", "tiny.toml", "--shard", shard, "--repetitions", "9", "--out", out], 0);
@@ -102,7 +103,7 @@ fn parts_of_a_sweep_are_ranked_apart_and_list_every_schedule() {
 /// A schedule whose rows failed is not ranked, but named.
 #[test]
 fn schedules_that_failed_are_named() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     base(folder.path());
     let path = folder.path().join("old/records.csv");
     let mut reader = csv::Reader::from_path(&path).unwrap();

@@ -137,6 +137,30 @@ fn every_library_gives_the_image_of_one_process() {
     }
 }
 
+/// MPICH's launcher leaves each rank all processors, so both would choose the first. With a binding they differ.
+#[test]
+fn ranks_do_not_share_a_pinned_processor() {
+    let name = "mpiexec.mpich";
+    if !is_launcher(name) {
+        println!("no {name}: nothing was tested");
+        return;
+    }
+    let _watchdog = Watchdog::new(Duration::from_mins(2));
+    let folder = tempfile::tempdir().unwrap();
+    let run = |bind: &[&str]| {
+        let mut command = launcher_named(name, folder.path());
+        command.args(bind).args(["-n", "2"]).arg(program()).args(SCENE);
+        command.args(["--threads", "1", "--ranks", "guided", "--pin", "compact", "--json"]);
+        finish(command)
+    };
+    let refused = run(&[]).with_code(2).err;
+    assert!(refused.contains("pin = compact: ranks 0 and 1 would both pin a worker to processor"), "{refused}");
+    if std::thread::available_parallelism().is_ok_and(|count| count.get() > 1) {
+        let row = json(&run(&["-bind-to", "core"]).with_code(0).out);
+        assert_eq!((&row["pin"], &row["ranks"]), (&"compact".into(), &2.into()));
+    }
+}
+
 #[test]
 fn options_that_ranks_lack_are_refused() {
     if !has_launcher() {

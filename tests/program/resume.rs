@@ -2,7 +2,7 @@
 //! `tests/program/faults` has the kills at any instant.
 
 use crate::experiment::{TINY, write_tiny};
-use crate::program::{finish, pathmark};
+use crate::program::{finish, in_memory, pathmark};
 use crate::snapshot::{assert_untouched, snapshot};
 use std::collections::{BTreeMap, HashSet};
 use std::fs;
@@ -14,7 +14,7 @@ const RESUME: [&str; 5] = ["run", "tiny.toml", "--out", "out", "--resume"];
 
 /// A folder with `tiny.toml`, and the path of the rows to come.
 fn prepared(text: &str) -> (tempfile::TempDir, PathBuf) {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     write_tiny(folder.path(), text);
     let records = folder.path().join("out/tiny/records.csv");
     (folder, records)

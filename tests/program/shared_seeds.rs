@@ -1,7 +1,7 @@
 //! M04: an image that shares samples with its reference looks better than it is, and two equal halves leave the
 //! reference's noise in the cross form. Every command that measures errors refuses both.
 
-use crate::program::{Finished, finish, pathmark, wait};
+use crate::program::{Finished, finish, in_memory, pathmark, wait};
 use pathmark::experiment::{CellJob, HalfFile, PointJob, SceneVersion, reference_seed};
 use pathmark::film_file::read_film;
 use pathmark::kernel::Spec;
@@ -57,7 +57,7 @@ fn measured(folder: &Path, seed: u64, references: [PathBuf; 2]) -> Finished {
 
 #[test]
 fn shared_seeds_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let [first, second] = halves(folder.path());
     let fine = measured(folder.path(), 1, [first.clone(), second.clone()]).with_code(0);
     assert!(fine.out.contains("\"mse\":"), "{}", fine.out);
@@ -74,7 +74,7 @@ fn shared_seeds_are_refused() {
 /// `compare` reads film files, which record their seeds.
 #[test]
 fn films_of_one_seed_are_not_compared() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let [first, second] = halves(folder.path());
     let compared = |image: &Path, reference: &Path| {
         let arguments = ["image".as_ref(), "compare".as_ref(), image.as_os_str(), reference.as_os_str()];

@@ -2,6 +2,7 @@
 
 use crate::diff::{json, run};
 use crate::experiment::{TINY, write_tiny};
+use crate::program::in_memory;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -47,7 +48,7 @@ fn retime(folder: &Path, times: impl Fn(&str, u32) -> f64) {
 
 #[test]
 fn repetitions_go_on_until_speedups_are_known_also_after_a_stop() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     write_tiny(folder.path(), TINY);
     let out = folder.path().join("out");
     let sweep = ["run", "tiny.toml", "--until", HUGE];
@@ -71,7 +72,7 @@ fn repetitions_go_on_until_speedups_are_known_also_after_a_stop() {
 /// Only one cell's times scatter: that cell and the serial run continue, all others stop.
 #[test]
 fn known_cells_are_left_out_and_their_baselines_are_not() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     write_tiny(folder.path(), TINY);
     let out = folder.path().join("out");
     run(folder.path(), &["run", "tiny.toml", "--until", HUGE], 0);
@@ -91,7 +92,7 @@ fn known_cells_are_left_out_and_their_baselines_are_not() {
 /// the fastest in turns; they stay, and so does the serial run.
 #[test]
 fn who_is_slower_is_left_out() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     write_tiny(folder.path(), TINY);
     let out = folder.path().join("out");
     let sweep = |most: &str, resume: &[&str]| {
@@ -137,7 +138,7 @@ fn who_is_slower_is_left_out() {
 /// A matrix's number of repetitions holds unless the command line gives another.
 #[test]
 fn a_matrix_has_fewer_repetitions_than_its_experiment() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let text = TINY.replacen("[matrix]", "[matrix]\nrepetitions = 2", 1);
     write_tiny(folder.path(), &text);
     for (options, count) in [(["--out", "own"].as_slice(), 2), (&["--repetitions", "3", "--out", "told"], 3)] {
@@ -154,7 +155,7 @@ fn a_matrix_has_fewer_repetitions_than_its_experiment() {
 
 #[test]
 fn an_experiment_says_until_when() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let until = |what: &str| TINY.replacen("repetitions = 3", &format!("repetitions = {what}"), 1);
     write_tiny(folder.path(), &until(&format!("{{ until = \"{HUGE}\", at-most = 9, max-time = \"90 min\" }}")));
     run(folder.path(), &["run", "tiny.toml"], 0);

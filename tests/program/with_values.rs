@@ -1,7 +1,7 @@
 //! `run --set` and `run --filter`: other values for an experiment, or a part of it, without editing it.
 
 use crate::experiment::{TINY, write_tiny};
-use crate::program::{finish, pathmark};
+use crate::program::{finish, in_memory, pathmark};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -23,7 +23,7 @@ fn values<'a>(rows: &'a [Row], column: &str) -> BTreeSet<&'a str> {
 
 #[test]
 fn values_are_set_in_every_matrix_and_profile() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     write_tiny(folder.path(), &TINY.replace("repetitions = 3", "repetitions = 3\nspp = [8]"));
     let rows = run(
         folder.path(),
@@ -39,7 +39,7 @@ fn values_are_set_in_every_matrix_and_profile() {
 /// The definition beside the rows is the experiment that was run.
 #[test]
 fn the_definition_beside_the_rows_has_the_values() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     write_tiny(folder.path(), TINY);
     let first = run(folder.path(), &["--set", "spp=12"]);
     let kept = folder.path().join("out/tiny/experiment.toml");
@@ -54,7 +54,7 @@ fn the_definition_beside_the_rows_has_the_values() {
 /// Without its serial run, a speedup would be an empty figure.
 #[test]
 fn filters_take_several_values_and_leave_serial_runs_in() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     write_tiny(folder.path(), TINY);
     let rows = run(folder.path(), &["--filter", "strategy=work-stealing,static-blocks", "--filter", "threads=2"]);
     let cells: BTreeSet<(&str, &str)> = rows.iter().map(|row| (&*row["strategy"], &*row["threads"])).collect();
@@ -64,7 +64,7 @@ fn filters_take_several_values_and_leave_serial_runs_in() {
 /// Only fields without a default must be given.
 #[test]
 fn an_experiment_of_few_lines_runs() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let lines = "title = \"Short\"\nquestion = \"Does it run?\"\nfigures = [\"schedules\"]\n[matrix]\nscene = [\"cornell\"]\n\
         spp = [4]\nstrategy = [\"serial\"]\nthreads = [1]\ndecomposition = [\"rows\"]\n[reference]\nestimator = \"bsdf\"\n";
     write_tiny(folder.path(), lines);

@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
+use tempfile::TempDir;
 
 /// Far above the time of any run on a loaded machine; only a hang reaches it.
 const LIMIT: Duration = Duration::from_mins(10);
@@ -16,6 +17,12 @@ pub(crate) struct Finished {
     pub(crate) code: Option<i32>,
     pub(crate) out: String,
     pub(crate) err: String,
+}
+
+/// A temporary folder in memory, if there is such a place: a sweep waits for a disk as long as it computes. It is no
+/// place for programs, which may be too large for it, or may not be run there.
+pub(crate) fn in_memory() -> TempDir {
+    tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).expect("a temporary folder")
 }
 
 /// `pathmark ARGUMENTS`, run in this folder and with an empty input.

@@ -8,8 +8,6 @@
 
 use std::fmt;
 
-use serde::Serialize;
-
 use super::interval::is_level;
 
 /// One comparison of a configuration with itself.
@@ -22,8 +20,7 @@ pub struct Comparison {
 }
 
 /// The verdict on the intervals after many comparisons.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// The number of misses is compatible with the stated levels.
     AsStated,
@@ -44,16 +41,14 @@ impl fmt::Display for Verdict {
 }
 
 /// The number of misses, and whether the stated levels explain it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Calibration {
     pub comparisons: usize,
     /// Expected number of misses, by the levels.
     pub expected: f64,
-    /// Number of misses found.
     pub found: usize,
     /// Two-sided: twice the probability of a number of misses at least as extreme on the same side, at most 1.
     pub p_value: f64,
-    /// The verdict at the requested significance.
     pub verdict: Verdict,
 }
 

@@ -11,7 +11,7 @@
 use crate::interval::{Estimate, Interval, is_level};
 use crate::mean::{Moments, t_quantile};
 use crate::quantile::median;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::collections::BTreeMap;
 
@@ -119,7 +119,7 @@ pub struct Costs {
 }
 
 /// A number of pairs that reaches a precision.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PowerPlan {
     pub processes: usize,
     pub pairs: usize,
@@ -137,6 +137,19 @@ impl Spread {
         let t = t_quantile(level, processes.checked_sub(1)?)?;
         let variance = self.between * self.between + OF_MEDIAN * self.within * self.within / pairs.max(1) as f64;
         Some(libm::expm1(t * (variance / processes as f64).sqrt()))
+    }
+
+    /// The plan with the narrowest interval that takes at most so many seconds; `None` if no plan does.
+    pub fn narrowest(&self, seconds: f64, level: f64, costs: Costs) -> Option<PowerPlan> {
+        let plans = (FEWEST_PROCESSES..=MOST).map_while(|processes| {
+            let pairs = ((seconds / processes as f64 - costs.process_s) / costs.pair_s).floor();
+            // A NaN ends the search, too.
+            let pairs = (pairs >= 1.0).then(|| (pairs as usize).min(MOST))?;
+            let half_width = self.half_width(processes, pairs, level)?;
+            let seconds = processes as f64 * (costs.process_s + pairs as f64 * costs.pair_s);
+            Some(PowerPlan { processes, pairs, half_width, seconds })
+        });
+        plans.min_by(|a, b| a.half_width.total_cmp(&b.half_width))
     }
 
     /// The cheapest plan for a half width of at most `share` of the ratio; `None` if none is short enough to be tried.
@@ -327,6 +340,20 @@ mod tests {
         }
         assert_eq!(spread.plan(1e-9, 0.95, cheap), None);
         assert_eq!(spread.plan(0.0, 0.95, cheap), None);
+    }
+
+    /// A plan for a narrower interval takes longer.
+    #[test]
+    fn the_narrowest_interval_of_a_time_is_that_of_the_cheapest_plan() {
+        let spread = Spread { within: 0.05, between: 0.002 };
+        let costs = Costs { pair_s: 0.02, process_s: 1.0 };
+        let found = spread.narrowest(60.0, 0.95, costs).unwrap();
+        assert!(found.seconds <= 60.0, "{found:?}");
+        assert_eq!(spread.half_width(found.processes, found.pairs, 0.95), Some(found.half_width));
+        let finer = spread.plan(0.99 * found.half_width, 0.95, costs).unwrap();
+        assert!(finer.seconds > 60.0, "{found:?} {finer:?}");
+        assert_eq!(spread.narrowest(2.0, 0.95, costs), None);
+        assert_eq!(spread.narrowest(f64::NAN, 0.95, costs), None);
     }
 
     /// Without disturbances other than layout and noise, the spreads are those of the machine.

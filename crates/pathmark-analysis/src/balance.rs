@@ -6,29 +6,22 @@
 //! "Quantifying the effectiveness of load balance algorithms", ICS 2012). All times are in seconds since the run's
 //! start.
 
-use serde::Serialize;
-
 /// One job's time: its worker, its start and its stop.
 pub type Span = (usize, f64, f64);
 
 /// The time of one worker, by its use.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Share {
     pub jobs: usize,
-    /// Seconds in jobs.
     pub busy_s: f64,
-    /// Seconds before and between its jobs.
     pub gap_s: f64,
     /// Seconds from its last job's end to the makespan; all of it for a worker without a job.
     pub tail_s: f64,
 }
 
-/// The time of all workers, by its use.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Balance {
-    /// From the run's start to its end, in seconds.
     pub makespan_s: f64,
-    /// Each worker's share, in the order of their numbers.
     pub workers: Vec<Share>,
 }
 

@@ -22,7 +22,8 @@ pub fn of_groups<const N: usize>(
     level: f64,
     statistic: impl Fn(&[Vec<f64>]) -> Option<[f64; N]>,
 ) -> Option<[Estimate; N]> {
-    if !groups.iter().all(|group| all_finite(group)) || !groups.iter().any(|group| can_vary(group)) {
+    let can_vary = |group: &Vec<f64>| group.iter().any(|value| Some(value) != group.first());
+    if !groups.iter().all(|group| all_finite(group)) || !groups.iter().any(can_vary) {
         return None;
     }
     let mut draw = Resampler::new();
@@ -49,11 +50,6 @@ fn estimate(value: f64, replicates: impl Iterator<Item = Option<f64>>, level: f6
     let interval =
         Interval::between(quantile_of_sorted(&ordered, tail)?, quantile_of_sorted(&ordered, 1.0 - tail)?, level)?;
     Some(Estimate { value, interval })
-}
-
-/// Whether there are two different values and all are finite.
-fn can_vary(values: &[f64]) -> bool {
-    all_finite(values) && values.iter().any(|value| Some(value) != values.first())
 }
 
 /// A source of draws with replacement.

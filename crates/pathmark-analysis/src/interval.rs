@@ -28,12 +28,9 @@ impl Interval {
     }
 }
 
-/// An estimate and its confidence interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Estimate {
-    /// The estimate.
     pub value: f64,
-    /// The interval that contains the true value with its stated confidence.
     pub interval: Interval,
 }
 
@@ -67,7 +64,6 @@ pub(crate) fn is_level(level: f64) -> bool {
     level > 0.0 && level < 1.0
 }
 
-/// Whether every value is finite.
 pub(crate) fn all_finite(values: &[f64]) -> bool {
     values.iter().all(|value| value.is_finite())
 }

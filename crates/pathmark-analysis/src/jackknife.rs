@@ -60,7 +60,6 @@ impl SeedCurves {
         Some(Self { whole: curve(None), without: (0..seeds).map(|seed| curve(Some(seed))).collect() })
     }
 
-    /// The curve of all seeds.
     pub fn whole(&self) -> &Curve {
         &self.whole
     }

@@ -17,6 +17,7 @@ pub mod jackknife;
 pub mod mean;
 pub mod metg;
 pub mod mse;
+pub mod parallel_overhead;
 pub mod price;
 pub mod quantile;
 pub mod randomness;
@@ -26,9 +27,7 @@ pub mod ranking;
 pub mod scaling_law;
 pub mod slope;
 pub mod speedup;
-pub mod superlinear;
 pub mod tail;
-pub mod versus;
 pub mod z_test;
 
 pub use interval::{Estimate, Interval};

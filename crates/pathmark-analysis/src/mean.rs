@@ -16,7 +16,6 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// The moments of all `values`.
     pub fn of(values: &[f64]) -> Self {
         let mut moments = Self::default();
         for &value in values {
@@ -25,7 +24,6 @@ impl Moments {
         moments
     }
 
-    /// Adds a value.
     pub fn push(&mut self, value: f64) {
         self.count += 1;
         let from_old = value - self.mean;
@@ -33,7 +31,6 @@ impl Moments {
         self.deviations += from_old * (value - self.mean);
     }
 
-    /// Returns the number of values.
     pub fn count(&self) -> u64 {
         self.count
     }

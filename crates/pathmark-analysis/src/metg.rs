@@ -7,8 +7,6 @@
 //! target several times. The largest granularity at which it rises through the target is then used, the cautious
 //! answer, and the result gives the number of crossings.
 
-use serde::Serialize;
-
 use super::bootstrap;
 use super::interval::Interval;
 use super::quantile::median;
@@ -20,8 +18,7 @@ pub const HALF: f64 = 0.5;
 pub type Grain = (f64, Vec<f64>);
 
 /// The minimum effective granularity.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Metg {
     /// The efficiency rises through the target.
     Value {
@@ -40,34 +37,18 @@ pub enum Metg {
     Below(f64),
     /// Even the largest jobs measured, of this many seconds, do not reach it.
     Above(f64),
-    /// METG is undefined.
-    Undefined(Undefined),
+    /// There is none, for this reason.
+    Undefined(&'static str),
 }
 
-/// Reason for an undefined METG.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Undefined {
-    /// No granularity, one without an efficiency, a value that is not finite, or a duration that is not positive.
-    NoData,
-    /// Small jobs reach the target and large ones do not. There may be too few large jobs for all workers.
-    Falling,
-}
-
-impl std::fmt::Display for Undefined {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::NoData => "no usable measurement",
-            Self::Falling => {
-                "efficiency only falls with the size of the jobs: there may be too few large ones to go round"
-            }
-        })
-    }
-}
+/// No granularity, one without an efficiency, a value that is not finite, or a duration that is not positive.
+const NO_DATA: &str = "no usable measurement";
+/// Small jobs reach the target and large ones do not.
+const FALLING: &str = "efficiency only falls with the size of the jobs: there may be too few large ones to go round";
 
 /// The METG of one strategy for efficiency `target`, from granularities in any order.
 pub fn metg(grains: &[Grain], target: f64, level: f64) -> Metg {
-    let Some((seconds, groups)) = prepared(grains) else { return Metg::Undefined(Undefined::NoData) };
+    let Some((seconds, groups)) = prepared(grains) else { return Metg::Undefined(NO_DATA) };
     let found = crossing(&seconds, &groups, target);
     if let Some(Metg::Value { seconds: at, between, crossings, .. }) = found {
         // On the logarithmic scale of the interpolation.
@@ -79,7 +60,7 @@ pub fn metg(grains: &[Grain], target: f64, level: f64) -> Metg {
         let interval = ends.and_then(|(low, high)| Interval::between(low, high, level));
         return Metg::Value { seconds: at, interval, between, crossings };
     }
-    found.unwrap_or(Metg::Undefined(Undefined::NoData))
+    found.unwrap_or(Metg::Undefined(NO_DATA))
 }
 
 /// Granularities in ascending order, with equal ones merged, and their efficiencies; `None` if one is unusable.
@@ -109,7 +90,7 @@ fn crossing(seconds: &[f64], groups: &[Vec<f64>], target: f64) -> Option<Metg> {
         return Some(match (crossings, reached.first()?) {
             (0, true) => Metg::Below(*seconds.first()?),
             (0, false) => Metg::Above(*seconds.last()?),
-            _ => Metg::Undefined(Undefined::Falling),
+            _ => Metg::Undefined(FALLING),
         });
     };
     let between = (seconds[below], seconds[below + 1]);
@@ -180,11 +161,11 @@ mod tests {
 
     #[test]
     fn degenerate_input_has_no_answer() {
-        let none = Metg::Undefined(Undefined::NoData);
+        let none = Metg::Undefined(NO_DATA);
         assert_eq!(metg(&[], HALF, 0.95), none);
         assert_eq!(metg(&[(1.0, vec![])], HALF, 0.95), none);
         assert_eq!(metg(&bare(&[(0.0, 0.5), (1.0, 0.6)]), HALF, 0.95), none);
         assert_eq!(metg(&bare(&[(1.0, f64::NAN)]), HALF, 0.95), none);
-        assert_eq!(metg(&bare(&[(1.0, 0.6), (2.0, 0.4)]), HALF, 0.95), Metg::Undefined(Undefined::Falling));
+        assert_eq!(metg(&bare(&[(1.0, 0.6), (2.0, 0.4)]), HALF, 0.95), Metg::Undefined(FALLING));
     }
 }

@@ -16,14 +16,11 @@
 //! | 0.50 | 96.5 / 94.0 | 95.6 / 94.8 | 97.8 / 94.2 |
 //! | 1.00 | 96.6 / 95.2 | 98.3 / 94.9 | 98.8 / 95.0 |
 
-use serde::Serialize;
-
 use super::interval::{Estimate, Interval};
 use super::mean::{Moments, t_interval, t_quantile};
 
 /// The method of an interval of the expected squared error.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
     /// t-interval of the mean of the seeds' squared errors.
     T,
@@ -32,13 +29,12 @@ pub enum Method {
 }
 
 /// The error of an image at one number of samples, from several seeds.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SeedError {
     /// Mean of the seeds' squared errors.
     pub mse: Estimate,
     /// The square root of that mean, and of its interval's ends.
     pub rmse: Estimate,
-    /// The method of the interval.
     pub method: Method,
     /// Standard deviation of the seeds' squared errors over their mean.
     pub variation: f64,

@@ -9,15 +9,12 @@
 //! uses the mean of two exponents: the one of the last octaves and the one of independent samples. The interval reaches
 //! from a somewhat larger exponent to the exponent of independent samples.
 
-use serde::Serialize;
-
 use super::fit::{Sums, logarithms};
 use super::interval::{Estimate, Interval};
 use super::jackknife::{Curve, SeedCurves};
 
 /// How the squared error continues beyond the measured points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Law {
     /// As 1/n, for independent samples.
     Independent,
@@ -57,12 +54,8 @@ impl Beyond {
 const LAST_OCTAVES: f64 = 16.0;
 
 impl Law {
-    /// Returns the samples per pixel at which the curve reaches `rmse`.
-    pub fn spp(self, curve: &Curve, rmse: f64) -> Option<f64> {
-        self.spp_if(curve, rmse, Beyond::Between)
-    }
-
-    fn spp_if(self, curve: &Curve, rmse: f64, beyond: Beyond) -> Option<f64> {
+    /// The samples per pixel at which the curve reaches `rmse`.
+    fn spp(self, curve: &Curve, rmse: f64, beyond: Beyond) -> Option<f64> {
         let (points, goal) = (logarithms(curve)?, libm::log(rmse * rmse));
         let line = self.line(&points, |&(_, mse)| mse <= goal, beyond)?;
         Some(libm::exp(line.x + (goal - line.y) / line.slope)).filter(|spp| spp.is_finite())
@@ -110,16 +103,13 @@ struct Tangent {
 /// A renderer of one scene, as far as prices need it: the error over samples, and the time per sample.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Renderer {
-    /// Error curves of several seeds.
     pub curves: SeedCurves,
-    /// How the curves continue beyond their points.
     pub law: Law,
     /// Seconds for one sample in every pixel.
     pub seconds_per_spp: Estimate,
 }
 
-/// The price of one accuracy.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Price {
     /// The goal.
     pub rmse: f64,
@@ -133,7 +123,7 @@ impl Renderer {
     /// that is not positive, for fewer than two points where the law is fitted, or for curves that do not fall.
     pub fn price(&self, rmse: f64) -> Option<Price> {
         let level = self.seconds_per_spp.interval.level;
-        let spp = self.widened(level, |curve, beyond| self.law.spp_if(curve, rmse, beyond))?;
+        let spp = self.widened(level, |curve, beyond| self.law.spp(curve, rmse, beyond))?;
         Some(Price { rmse, spp, seconds: spp.times(&self.seconds_per_spp)? })
     }
 
@@ -170,6 +160,18 @@ impl Renderer {
     }
 }
 
+/// Returns the seconds of `a` to reach an RMSE over the seconds of `b`: below 1 if `a` is better. Both are assumed to
+/// be independent, so the interval is wider than necessary if they share samples.
+pub fn equal_error(a: &Renderer, b: &Renderer, rmse: f64) -> Option<Estimate> {
+    a.price(rmse)?.seconds.times(&b.price(rmse)?.seconds.inverse()?)
+}
+
+/// Returns the RMSE of `a` over the RMSE of `b` after the same `seconds`. For independent samples, it is the square
+/// root of [`equal_error`].
+pub fn equal_time(a: &Renderer, b: &Renderer, seconds: f64) -> Option<Estimate> {
+    a.rmse_after(seconds)?.times(&b.rmse_after(seconds)?.inverse()?)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -193,9 +195,9 @@ mod tests {
         // MSE = 4/n: an RMSE of 0.1 takes 400 samples; MSE = 4 n^-1.6: 400^(1/1.6) of them.
         let independent = power(4.0, -1.0);
         for law in [Law::Independent, Law::Fitted] {
-            assert!((law.spp(&independent, 0.1).unwrap() - 400.0).abs() < 1e-9, "{law:?}");
+            assert!((law.spp(&independent, 0.1, Beyond::Between).unwrap() - 400.0).abs() < 1e-9, "{law:?}");
             assert!((law.rmse(&independent, 400.0).unwrap() - 0.1).abs() < 1e-12, "{law:?}");
-            assert!((law.spp(&independent, 0.8).unwrap() - 6.25).abs() < 1e-9, "{law:?}, inside");
+            assert!((law.spp(&independent, 0.8, Beyond::Between).unwrap() - 6.25).abs() < 1e-9, "{law:?}, inside");
             assert!((law.rmse(&independent, 0.25).unwrap() - 4.0).abs() < 1e-9, "{law:?}, before the first");
         }
         // Beyond 16 samples, from MSE = 4 / 16^1.6: with 1.3 times the exponent -1.6, with the mean of -1.6 and -1, and
@@ -204,14 +206,20 @@ mod tests {
         let missing = 400.0 / libm::pow(16.0, 1.6);
         let expected = [(Beyond::Steeper, 2.08), (Beyond::Between, 1.3), (Beyond::Lost, 1.0)];
         for (beyond, exponent) in expected {
-            let spp = Law::Fitted.spp_if(&better, 0.1, beyond).unwrap();
+            let spp = Law::Fitted.spp(&better, 0.1, beyond).unwrap();
             assert!((spp / (16.0 * libm::pow(missing, 1.0 / exponent)) - 1.0).abs() < 1e-9, "{beyond:?}: {spp}");
             assert!((Law::Fitted.rmse_if(&better, spp, beyond).unwrap() - 0.1).abs() < 1e-12, "{beyond:?}");
         }
         // Only the last octaves count: a first point off the line changes nothing.
         let mut bent = better.clone();
         bent.insert(0, (0.5, 100.0));
-        assert!((Law::Fitted.spp(&bent, 0.01).unwrap() / Law::Fitted.spp(&better, 0.01).unwrap() - 1.0).abs() < 1e-9);
+        assert!(
+            (Law::Fitted.spp(&bent, 0.01, Beyond::Between).unwrap()
+                / Law::Fitted.spp(&better, 0.01, Beyond::Between).unwrap()
+                - 1.0)
+                .abs()
+                < 1e-9
+        );
     }
 
     #[test]
@@ -259,7 +267,8 @@ mod tests {
             let mut pixel = || 0.5 * (uniform(&mut generator) + uniform(&mut generator));
             let images: Vec<Vec<f64>> = (0..8).map(|_| (0..64).map(|_| pixel()).collect()).collect();
             let curves = SeedCurves::of_images(&[2.0], &[images.iter().map(Vec::as_slice).collect()]).unwrap();
-            let spp = curves.positive_estimate(0.95, |curve| Law::Independent.spp(curve, 0.01)).unwrap();
+            let spp =
+                curves.positive_estimate(0.95, |curve| Law::Independent.spp(curve, 0.01, Beyond::Between)).unwrap();
             hits += u32::from(spp.interval.contains(1e4 / 12.0));
             mean += spp.value / (1e4 / 12.0) / 2000.0;
         }
@@ -271,10 +280,32 @@ mod tests {
 
     #[test]
     fn degenerate_input_has_no_answer() {
-        assert_eq!(Law::Fitted.spp(&vec![(1.0, 1.0)], 0.1), None);
-        assert_eq!(Law::Fitted.spp(&vec![(1.0, 1.0), (2.0, 1.0)], 0.1), None);
-        assert_eq!(Law::Independent.spp(&vec![], 0.1), None);
-        assert_eq!(Law::Independent.spp(&vec![(1.0, -1.0)], 0.1), None);
-        assert_eq!(Law::Independent.spp(&power(1.0, -1.0), 0.0), None);
+        assert_eq!(Law::Fitted.spp(&vec![(1.0, 1.0)], 0.1, Beyond::Between), None);
+        assert_eq!(Law::Fitted.spp(&vec![(1.0, 1.0), (2.0, 1.0)], 0.1, Beyond::Between), None);
+        assert_eq!(Law::Independent.spp(&vec![], 0.1, Beyond::Between), None);
+        assert_eq!(Law::Independent.spp(&vec![(1.0, -1.0)], 0.1, Beyond::Between), None);
+        assert_eq!(Law::Independent.spp(&power(1.0, -1.0), 0.0, Beyond::Between), None);
+    }
+
+    fn of_variance(variance: f64, per_spp: f64) -> Renderer {
+        let curve = |factor: f64| vec![(16.0, factor * variance / 16.0)];
+        let interval = Interval { low: 0.99 * per_spp, high: 1.01 * per_spp, level: 0.95 };
+        Renderer {
+            curves: SeedCurves::of_errors(&[curve(0.98), curve(1.0), curve(1.02), curve(1.0)]).unwrap(),
+            law: Law::Independent,
+            seconds_per_spp: Estimate { value: per_spp, interval },
+        }
+    }
+
+    #[test]
+    fn six_times_less_variance_for_half_more_time() {
+        let (plain, better) = (of_variance(6.0, 1.0), of_variance(1.0, 1.5));
+        let time = equal_error(&better, &plain, 0.01).unwrap();
+        let error = equal_time(&better, &plain, 100.0).unwrap();
+        assert!((time.value - 0.25).abs() < 1e-4 && time.interval.contains(0.25), "{time:?}");
+        assert!((error.value - 0.5).abs() < 1e-4 && error.interval.contains(0.5), "{error:?}");
+        assert!((time.interval.high / time.value - 1.0).abs() < 0.05 && !time.interval.contains(0.27));
+        let back = equal_error(&plain, &better, 0.01).unwrap();
+        assert!((back.value - 4.0).abs() < 1e-3);
     }
 }

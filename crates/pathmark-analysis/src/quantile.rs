@@ -24,13 +24,6 @@ pub fn quantile(values: &[f64], q: f64) -> Option<f64> {
     quantile_of_sorted(&sorted(values)?, q)
 }
 
-/// The median of the distances from the median, in the unit of the values and not scaled to a standard deviation.
-pub fn median_absolute_deviation(values: &[f64]) -> Option<f64> {
-    let centre = median(values)?;
-    let distances: Vec<f64> = values.iter().map(|value| (value - centre).abs()).collect();
-    median(&distances)
-}
-
 /// The narrowest symmetric pair of order statistics that encloses the true median with at least `level` confidence.
 ///
 /// With five or fewer values, even the extremes do not reach 95 %. They are then returned, and the interval's own
@@ -101,13 +94,6 @@ mod tests {
     }
 
     #[test]
-    fn deviation_from_the_median() {
-        // The usual textbook sample: median 2, distances 1 1 0 0 2 4 7, their median 1.
-        assert_eq!(median_absolute_deviation(&[1.0, 1.0, 2.0, 2.0, 4.0, 6.0, 9.0]), Some(1.0));
-        assert_eq!(median_absolute_deviation(&[3.0]), Some(0.0));
-    }
-
-    #[test]
     fn ranks_of_the_median_interval_match_the_binomial_table() {
         let table = [(5, 1, 0.9375), (6, 1, 0.96875), (9, 2, 0.960_937_5), (10, 2, 0.978_515_625)];
         for (n, rank, level) in table {
@@ -141,7 +127,6 @@ mod tests {
         assert_eq!(median(&[f64::INFINITY, 1.0, 2.0]), None);
         assert_eq!(quantile(&[1.0], 1.5), None);
         assert_eq!(quantile(&[1.0], f64::NAN), None);
-        assert_eq!(median_absolute_deviation(&[]), None);
         assert_eq!(median_interval(&[1.0], 0.95), None);
         assert_eq!(median_interval(&[1.0, 2.0, 3.0], 1.0), None);
     }

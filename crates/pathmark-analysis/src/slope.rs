@@ -6,14 +6,12 @@
 //! logarithm of a scattered error is on average below the logarithm of its expectation, by half its squared variation.
 //! The difference is larger where few samples meet a heavy tail, and it tilts every curve in the same direction.
 
-use serde::Serialize;
-
 use super::fit::{Sums, logarithms};
 use super::interval::Estimate;
 use super::jackknife::{Curve, SeedCurves};
 
 /// RMSE = exp(`log_scale`) x^exponent.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PowerLaw {
     /// The exponent, with an interval over the seeds.
     pub exponent: Estimate,
@@ -26,11 +24,6 @@ pub struct PowerLaw {
 }
 
 impl PowerLaw {
-    /// RMSE at `x`.
-    pub fn at(&self, x: f64) -> f64 {
-        libm::exp(self.log_scale + self.exponent.value * libm::log(x))
-    }
-
     /// Whether the points do not lie on a line: the interval of the bend excludes 0. The curve then has no single
     /// exponent, and the fitted one is a mean. Causes are a reference that is too noisy, a bias that dominates the
     /// error, or samples that become better than independent at some number.
@@ -123,7 +116,9 @@ mod tests {
         let law = of_curves(&[power(1.0), power(3.0), power(5.0 + 1e-9)], 0.95);
         // The slopes of parallel curves differ by rounding errors at most.
         if let Some(law) = law {
-            assert!((law.exponent.value + 0.4).abs() < 1e-12 && (law.at(1.0) - 3.0_f64.sqrt()).abs() < 1e-8);
+            assert!(
+                (law.exponent.value + 0.4).abs() < 1e-12 && (libm::exp(law.log_scale) - 3.0_f64.sqrt()).abs() < 1e-8
+            );
         }
         // Two curves of ln MSE with slopes -1 and -0.6 about a common centre: their mean squared error is a cosh, which bends upwards.
         let tilted = |slope: f64| SPP.map(|spp| (spp, libm::pow(spp / 16.0, slope))).to_vec();

@@ -8,7 +8,6 @@ use serde::Serialize;
 
 use super::interval::all_finite;
 
-/// Measures of the tail of some samples.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Tail {
     /// Fourth moment about the mean over the square of the second: 3 for a normal distribution, 1.8 for a uniform one.

@@ -66,30 +66,29 @@ fn devices_add_up_samples_as_a_film_does() {
     }
 }
 
-/// Compares every scene with every estimator on a device, in both precisions. One scene gets every sampler. The others
+/// Compares every scene with every estimator on a device, in one precision. One scene gets every sampler. The others
 /// take turns with the samplers, because random numbers do not depend on the scene.
-fn have_the_scalar_kernels_bits(device: &str) {
+fn have_the_scalar_kernels_bits(device: &str, precision: &str) {
     let piece = Piece { bounds: Bounds { x0: 0, y0: 0, x1: 24, y1: 18 }, samples: 0..8 };
-    let (mut compared, mut in_single, mut scenes) = (0, 0, 0);
+    let (mut compared, mut scenes) = (0, 0);
     let mut next = SAMPLERS.into_iter().cycle();
     for (name, _) in SCENES {
         let scene = Arc::new(load(name).unwrap());
         let before = compared;
         for estimator in ESTIMATORS {
             let samplers = next.by_ref().take(if *name == "cornell" { SAMPLERS.len() } else { 1 });
-            for (sampler, precision) in samplers.flat_map(|sampler| [(sampler, "f64"), (sampler, "f32")]) {
+            for sampler in samplers {
                 let (estimator, sampler) = (estimator.name.to_string(), sampler.to_string());
                 let spec = Spec { width: 24, height: 18, seed: 3, estimator, sampler, ..Spec::default() };
                 let spec = Spec { precision: precision.to_string(), ..spec };
-                let is_rendered = usize::from(is_same(&scene, &spec, device, from_ref(&piece)));
-                compared += is_rendered;
-                in_single += is_rendered * usize::from(precision == "f32");
+                compared += usize::from(is_same(&scene, &spec, device, from_ref(&piece)));
             }
         }
         scenes += usize::from(compared > before);
     }
-    println!("{device}: {compared} comparisons of {scenes} scenes, {in_single} in single precision");
-    assert!(scenes >= 30 && compared > 230 && in_single > 80, "{compared} comparisons, {in_single}, {scenes} scenes");
+    println!("{device}, {precision}: {compared} comparisons of {scenes} scenes");
+    let least = if precision == "f32" { (20, 80) } else { (30, 140) };
+    assert!(scenes >= least.0 && compared > least.1, "{compared} comparisons of {scenes} scenes");
 }
 
 /// Rays that start outside the box of their own sphere after rounding, in a hierarchy, and scenes that single precision
@@ -137,10 +136,18 @@ fn camera_rays_are_those_of_the_scalar_kernel() {
 
 #[test]
 fn the_host_has_the_scalar_kernels_bits() {
-    have_the_scalar_kernels_bits(HOST);
+    have_the_scalar_kernels_bits(HOST, "f64");
+}
+
+#[test]
+fn the_host_has_the_bits_of_lanes_in_single_precision() {
+    have_the_scalar_kernels_bits(HOST, "f32");
 }
 
 #[test]
 fn other_devices_have_the_scalar_kernels_bits() {
-    available().iter().filter(|device| *device != HOST).for_each(|device| have_the_scalar_kernels_bits(device));
+    for device in available().iter().filter(|device| *device != HOST) {
+        have_the_scalar_kernels_bits(device, "f64");
+        have_the_scalar_kernels_bits(device, "f32");
+    }
 }

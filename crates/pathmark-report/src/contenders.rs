@@ -1,20 +1,16 @@
 //! Contenders: the ways to render a scene that an experiment compares by price. Each has error curves over seeds, and
 //! seconds per sample.
 
-use super::estimated::LEVEL;
-use super::naming::{Part, joined, needed};
-use super::results::Results;
-use super::rows::{Row, group, values};
+use super::naming::{Part, needed};
 use super::schedule::{crew, strategy};
-use crate::analysis::Interval;
 use crate::analysis::jackknife::{Curve, SeedCurves};
 use crate::analysis::mean::geometric_interval;
 use crate::analysis::mse::over_seeds;
 use crate::analysis::price::{Law, Renderer};
-use crate::error::{InputError, Result};
+use crate::error::InputError;
 use crate::experiment::{EXTERNAL, law_of};
-use crate::measure::{ImageKey, SETTINGS, ScheduleKey, Setting};
-use std::collections::{BTreeMap, BTreeSet};
+use crate::measure::{SETTINGS, Setting};
+use crate::prelude::*;
 use std::iter::once;
 
 /// An estimator with a sampler and a schedule, on a scene.
@@ -24,11 +20,9 @@ pub(super) struct Contender {
     /// The image that it renders, without samples and seed.
     pub(super) image: ImageKey,
     pub(super) schedule: ScheduleKey,
-    /// Its kernel, in words.
     pub(super) kernel: String,
     /// Its points, by samples per pixel.
     pub(super) points: Vec<CostPoint>,
-    /// Its prices are computed from this.
     pub(super) renderer: Renderer,
     /// The error curve of each seed, and its seconds per sample in every pixel.
     seeds: Vec<(Curve, f64)>,
@@ -82,6 +76,11 @@ impl Contender {
             renderer,
             seeds,
         })
+    }
+
+    /// The variance of a sample at the end of its curve.
+    pub(super) fn variance(&self) -> Option<f64> {
+        self.renderer.curves.whole().last().map(|(spp, mse)| spp * mse)
     }
 
     /// Predicts the other seeds from the first half of the seeds and up to a quarter of the samples. `None` below six

@@ -5,12 +5,13 @@ use crate::analysis::mean::{Moments, t_interval};
 use crate::analysis::quantile::median;
 use crate::analysis::{Estimate, Interval};
 use crate::plot::{Dot, Point};
+use serde::Serialize;
 
 /// Confidence of every interval in the report.
 pub(super) const LEVEL: f64 = 0.95;
 
 /// A value and its interval, if there were enough values for one.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct Estimated {
     pub(super) value: f64,
     pub(super) interval: Option<Interval>,

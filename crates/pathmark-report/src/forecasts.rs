@@ -1,14 +1,7 @@
 //! Simulated and predicted schedules as tables and charts: for the figure of an experiment and for the verb `simulate`.
 
-use super::block::Block;
-use super::results::Results;
-use super::rows::Row;
-use super::table::Digits::Decimals;
-use super::words::counted;
 use crate::analysis::speedup::serial_fraction;
-use crate::error::Result;
-use crate::plot::style::Look;
-use crate::plot::{Axis, Curve, LineChart, Overlay, Point, Series};
+use crate::prelude::*;
 use crate::simulate::{Contender, DISTURBED, Forecast, Observed, Prediction, agreement, predict};
 use std::collections::HashMap;
 
@@ -16,7 +9,7 @@ use std::collections::HashMap;
 /// than processors, unless they have a thread for each job.
 pub fn predictions(results: &Results, contenders: &[Contender]) -> Result<Vec<Prediction>> {
     let serial = results.serial()?;
-    let processors = results.processors();
+    let processors = results.run.machine.processors;
     let costs = serial_costs(results)?;
     let modelled = |row: &Row| row.threads <= processors || row.threads == row.jobs;
     let pairs = serial.in_order(results);

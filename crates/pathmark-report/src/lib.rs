@@ -9,28 +9,31 @@ mod page;
 #[cfg(test)]
 mod pairing_tests;
 pub mod plot;
+mod prelude;
 pub mod rank_forecasts;
-mod reference_image;
+mod remedy;
 mod results;
 mod rows;
 mod serial;
 #[cfg(test)]
 mod tests;
 pub mod timeline;
+pub mod why;
 mod words;
 
 pub use figures::{FIGURES, FigureEntry, check_figures, figure_of_serial};
 pub use page::benches::{BenchRow, write_benches};
 pub use page::block::Block;
 pub use results::Results;
+pub use words::counted;
 
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
 use crate::lab::Lab;
-use page::{Section, benches, block, guards, table};
+use page::{Section, benches, block, doctor, guards, table};
 use pathmark_harness::{
     analysis, atomic_file, cases_file, cluster, csv_file, digest, error, experiment, files, film_file, guard_prices,
-    image_io, input, kernel, lab, measure, metric, scene, shell, simulate,
+    image_io, input, kernel, lab, measure, metric, scene, shell, simulate, strategy,
 };
 use rows::{naming, paired, schedule};
 use std::path::{Path, PathBuf};
@@ -49,16 +52,22 @@ pub fn claim(option: &str, out: &Path, files: &mut Files) -> Result<()> {
 /// shows the verdicts on claims; only the verb `claims` writes them into files.
 pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
     let mut sections = Vec::new();
+    let mut add = |folder: &Path, section: Section| {
+        section.blocks.iter().try_for_each(|block| block.save(&folder.join("figures")))?;
+        sections.push(section);
+        Ok::<(), Error>(())
+    };
     for folder in experiment_folders(out)? {
         let results = Results::read(lab, out, &folder)?;
         let blocks = figures::blocks(&results)?;
-        for block in &blocks {
-            block.save(&folder.join("figures"))?;
-        }
-        sections.push(Section::of(results, blocks));
+        add(&folder, Section::of(results, blocks))?;
     }
-    sections.extend(guards::section(out)?);
-    sections.extend(benches::section(out)?);
+    for section in [guards::section(out)?, benches::section(out)?].into_iter().flatten() {
+        add(&out.join(&section.name), section)?;
+    }
+    if !sections.is_empty() {
+        sections.extend(doctor::section(out)?);
+    }
     if let Some(section) = claims::section(lab, out)? {
         sections.insert(0, section);
     }
@@ -70,11 +79,6 @@ pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
     let html = page::html(&sections)?;
     atomic_file::write(&page, |file| file.write_all(html.as_bytes()))?;
     Ok(page)
-}
-
-/// Writes one block's figure or table into a folder.
-pub fn save(block: &Block, folder: &Path) -> Result<()> {
-    block.save(folder)
 }
 
 /// The folders that have records, sorted by name.

@@ -43,6 +43,8 @@ fn rows_of(scales: Scales, variants: &[fn(&mut Record)]) -> Vec<Record> {
                 own.busy_sum_s = Some(seconds);
                 own.busy_max_s = Some(seconds);
                 own.job_max_s = Some(seconds);
+                own.idle_between_jobs_s = Some(seconds / 16.0);
+                own.merge_s = Some(seconds / 32.0);
                 own.mse = Some(0.1 / f64::from(spp) * (1.0 + 0.1 * seed as f64));
                 rows.push(own);
             }

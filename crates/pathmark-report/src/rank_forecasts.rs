@@ -1,23 +1,15 @@
 //! Simulated and predicted runs of several processes as tables and a chart: for an experiment's figure and for
 //! `simulate --ranks`.
 
-use super::block::Block;
 use super::forecasts::serial_costs;
-use super::results::Results;
-use super::rows::{Row, gathered};
-use super::table::Digits::{Decimals, Significant};
-use super::words::counted;
-use crate::analysis::quantile::median;
 use crate::cluster::MessageCosts;
-use crate::error::Result;
 use crate::lab::{LOOK, Lab, RankRule};
-use crate::plot::{Axis, Curve, LineChart, Overlay, Point, Series};
+use crate::prelude::*;
 use crate::simulate::{Cluster, Contender, Crew, Hardware, Messages, agreement};
 
 /// Bytes sent to rank 0 for a pixel: three sums, three sums of squares, and the number of samples.
 const PIXEL_BYTES: f64 = 56.0;
 
-/// Messages with the measured costs, for the simulation.
 pub fn messages(costs: &MessageCosts) -> Messages {
     let needs_rank_0 = (costs.fetch_while_rendering_s() - costs.fetch_s()) / LOOK.as_secs_f64();
     Messages {
@@ -40,7 +32,6 @@ pub struct RankPrediction {
     ratio: f64,
 }
 
-/// One row of a forecast.
 pub struct RankForecast {
     rule: String,
     strategy: String,
@@ -65,7 +56,7 @@ pub fn rank_predictions(
     messages: Messages,
 ) -> Result<Vec<RankPrediction>> {
     let lab: &Lab = &results.definition.lab;
-    let (serial, costs, processors) = (results.serial()?, serial_costs(results)?, results.processors());
+    let (serial, costs, processors) = (results.serial()?, serial_costs(results)?, results.run.machine.processors);
     let pairs = serial.in_order(results);
     let pairs = pairs.iter().filter(|(row, _)| row.threads <= processors);
     let groups = gathered(pairs.filter_map(|(row, serial)| {
@@ -122,17 +113,12 @@ pub fn rank_prediction_blocks(predictions: &[RankPrediction]) -> Vec<Block> {
 
 /// The cases of a forecast of ranks.
 pub struct RankPlan<'a> {
-    /// Rules between ranks.
     pub rules: &'a [RankRule],
     /// The strategies within a rank that has several threads.
     pub strategies: &'a [String],
-    /// Numbers of ranks.
     pub ranks: &'a [usize],
-    /// Numbers of threads of a rank.
     pub threads: &'a [usize],
-    /// Costs of messages.
     pub messages: Messages,
-    /// The processors of each rank.
     pub hardware: Hardware,
 }
 

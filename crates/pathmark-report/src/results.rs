@@ -1,12 +1,14 @@
 //! Results of an experiment, read from its folder.
 
-use super::estimated::Estimated;
 use super::naming::{Part, joined, needed};
 use super::rows::{Row, by_process, gathered, group};
 use super::schedule::{Schedule, over_ranks, strategy};
 use crate::analysis::confidence_sequence::Stopping;
 use crate::error::{InputError, Result};
-use crate::experiment::{Definition, EXTERNAL, Profile, RunFile, read_records, read_run_file, trace_file};
+use crate::experiment::{
+    Definition, EXTERNAL, Profile, RunFile, read_records, read_run_file, trace_file, wanted_references,
+};
+use crate::film_file::read_film;
 use crate::image_io::{self, Image};
 use crate::input::read_text;
 use crate::lab::Lab;
@@ -21,11 +23,9 @@ pub struct Results {
     pub definition: Definition,
     /// Command and machine.
     pub run: RunFile,
-    /// Rows that failed.
     pub failed: Vec<Record>,
     /// Rows that were not run, because the machine lacked what they need.
     pub left_out: LeftOut,
-    /// The experiment's folder.
     pub folder: PathBuf,
     /// The folder that holds all experiments and the references.
     pub out: PathBuf,
@@ -35,7 +35,6 @@ pub struct Results {
 }
 
 impl Results {
-    /// Reads a folder that a sweep wrote.
     pub fn read(lab: &Arc<Lab>, out: &Path, folder: &Path) -> Result<Self> {
         let path = folder.join("experiment.toml");
         let name = folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
@@ -73,28 +72,14 @@ impl Results {
         group(self.rows(), key)
     }
 
-    pub(super) fn by_schedule(&self) -> BTreeMap<&Schedule, Vec<&Row>> {
-        self.by(|row| &row.schedule)
-    }
-
-    /// The warnings of each row that did not fail.
-    pub(super) fn warnings(&self) -> impl Iterator<Item = &str> {
-        self.rows.iter().map(|row| row.warnings.as_str())
-    }
-
     /// The rule that set the number of repetitions: fixed, or sequential with a goal.
     pub(super) fn stopping(&self) -> Stopping {
         if self.run.until.is_some() { Stopping::Sequential } else { Stopping::Fixed }
     }
 
-    /// The median of some values with the interval that the number of repetitions allows.
-    pub(super) fn median(&self, values: &[f64]) -> Option<Estimated> {
-        Estimated::median(values, self.stopping())
-    }
-
     /// Doubts about the times of the rows that did not fail.
     pub fn doubts(&self) -> TimingConcerns {
-        TimingConcerns::of(self.warnings())
+        TimingConcerns::of(self.rows.iter().map(|row| row.warnings.as_str()))
     }
 
     /// How many rows did not fail.
@@ -116,7 +101,6 @@ impl Results {
         Self::typical(&rows).map_or(Ok(None), |row| self.trace(row))
     }
 
-    /// The profile that was run.
     pub fn profile(&self) -> Profile {
         Profile::from_name(&self.run.profile).unwrap_or(Profile::Quick)
     }
@@ -129,22 +113,12 @@ impl Results {
         let scene = scenes.first().filter(|_| scenes.len() == 1).map(|scene| format!("{scene}, "));
         let sizes: Vec<String> = sizes.into_iter().map(|(width, height)| format!("{width}x{height}")).collect();
         let size = (1..=3).contains(&sizes.len()).then(|| format!("{}, ", sizes.join(" and ")));
-        format!("{}{}{}", scene.unwrap_or_default(), size.unwrap_or_default(), self.machine_line())
+        format!("{}{}{}", scene.unwrap_or_default(), size.unwrap_or_default(), self.run.machine.line())
     }
 
     /// Width and height of the images.
     pub(super) fn size(&self) -> String {
         self.first().map_or_else(String::new, |row| format!("{}x{}", row.width, row.height))
-    }
-
-    /// The machine alone, for figures whose rows differ in scene or size.
-    pub(super) fn machine_line(&self) -> String {
-        self.run.machine.line()
-    }
-
-    /// Processors of the machine.
-    pub(super) fn processors(&self) -> usize {
-        self.run.machine.processors
     }
 
     /// The properties in which the experiment's images differ, apart from samples and seed; empty if they do not
@@ -178,6 +152,29 @@ impl Results {
             }
         }
         Ok(images)
+    }
+
+    /// The mean of the two half-references of a scene, by the name that rows have for it, or of the first scene; `None` if
+    /// their files are missing, as in a copied folder.
+    pub(super) fn reference_image(&self, scene: Option<&str>) -> Result<Option<Image>> {
+        let profile = self.profile();
+        let cells = self.definition.cells(profile)?;
+        let hashes: Option<BTreeSet<&str>> = scene
+            .map(|scene| self.rows().filter(|row| row.scene == scene).map(|row| row.scene_hash.as_str()).collect());
+        let mut wanted = wanted_references(&self.definition, profile, &cells)?.into_iter();
+        let of_scene =
+            wanted.find(|wanted| hashes.as_ref().is_none_or(|own| own.iter().any(|hash| wanted.is_of(hash))));
+        let Some(wanted) = of_scene else { return Ok(None) };
+        let [first, second] = wanted.paths(&self.definition.lab, &self.out.join("references"))?;
+        if !(first.is_file() && second.is_file()) {
+            return Ok(None);
+        }
+        let ((_, first), (_, second)) = (read_film(&first)?, read_film(&second)?);
+        let mut image = first.image();
+        for (pixel, other) in image.pixels.iter_mut().zip(second.image().pixels) {
+            *pixel = std::array::from_fn(|channel| 0.5 * (pixel[channel] + other[channel]));
+        }
+        Ok(Some(image))
     }
 
     /// The row with the median time; of two middle ones, the faster. It is a row of the image that most of the rows
@@ -227,12 +224,14 @@ fn check_identities(records: &[Record], path: &Path) -> Result<()> {
 /// Names the schedules of the rows: the strategy, and the other properties that distinguish schedules of the same
 /// image.
 fn named(records: Vec<Record>) -> Vec<Row> {
-    let parts: [Part<Record>; 5] = [
+    let parts: [Part<Record>; 7] = [
         |record| record.output.clone(),
         Record::kernel_name,
         |record| if record.kernel_fallback.is_empty() { String::new() } else { "fallback".to_string() },
         |record| record.effects.clone(),
         |record| record.accelerator.clone(),
+        |record| if record.pin.is_empty() { String::new() } else { format!("pin {}", record.pin) },
+        |record| if record.counters { "with counters".to_string() } else { String::new() },
     ];
     let told = |record: &Record| {
         (

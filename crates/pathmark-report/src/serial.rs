@@ -1,21 +1,15 @@
 //! Schedules paired with the serial runs of the same image in the same repetition.
 
-use super::results::Results;
-use super::rows::paired::{Pairs, Partners, Ratio, Repeats, along, in_common, medians, with_intervals};
-use super::rows::schedule::Schedule;
-use super::rows::{Row, gathered};
-use crate::analysis::confidence_sequence::Stopping;
-use crate::error::Result;
-use crate::measure::{ImageKey, ScheduleKey};
-use std::collections::{BTreeMap, BTreeSet};
+use super::rows::paired::Pairs;
+use crate::prelude::*;
 
 /// The schedules of an experiment, and the serial runs that they are compared with.
 pub(super) struct Serial<'a> {
     schedules: BTreeMap<&'a Schedule, Vec<&'a Row>>,
     /// The serial runs on the same pieces.
-    on_pieces: Partners<'a>,
+    pub(super) on_pieces: Partners<'a>,
     /// The fastest serial runs over all pieces.
-    fastest: Partners<'a>,
+    pub(super) fastest: Partners<'a>,
     stopping: Stopping,
     /// Width and height of most images.
     usual_size: Option<(u32, u32)>,
@@ -38,30 +32,24 @@ pub(super) fn without_pieces(_: &mut ImageKey, schedule: &mut ScheduleKey) {
 }
 
 impl Results {
-    /// The schedules paired with the serial runs.
     pub(super) fn serial(&self) -> Result<Serial<'_>> {
-        Serial::of(self)
-    }
-}
-
-impl<'a> Serial<'a> {
-    fn of(results: &'a Results) -> Result<Self> {
-        let schedules = results.by_schedule();
+        let schedules = self.by(|row| &row.schedule);
         let serial = || schedules.iter().filter(|(s, _)| s.is_serial()).flat_map(|(_, rows)| rows.iter().copied());
-        let sizes = results.by(|row| (row.width, row.height)).into_iter();
+        let sizes = self.by(|row| (row.width, row.height)).into_iter();
         let others = schedules.keys().filter(|schedule| !schedule.is_serial());
         let pieces: BTreeSet<&str> = others.map(|schedule| schedule.key.decomposition.as_str()).collect();
-        Ok(Self {
+        Ok(Serial {
             names_pieces: pieces.len() > 2,
             on_pieces: Partners::of(serial(), with_pieces)?,
             fastest: Partners::fastest(serial(), without_pieces),
-            stopping: results.stopping(),
+            stopping: self.stopping(),
             usual_size: sizes.max_by_key(|(_, rows)| rows.len()).map(|(size, _)| size),
             schedules,
         })
     }
+}
 
-    /// All schedules except the serial ones.
+impl<'a> Serial<'a> {
     pub(super) fn others(&self) -> impl Iterator<Item = &'a Schedule> {
         self.schedules.keys().copied().filter(|schedule| !schedule.is_serial())
     }
@@ -70,31 +58,21 @@ impl<'a> Serial<'a> {
         self.schedules.get(schedule).map_or(&[], Vec::as_slice)
     }
 
-    /// Runs with the serial runs on the same pieces.
-    pub(super) fn on_pieces(&self, rows: impl IntoIterator<Item = &'a Row>) -> Pairs<'a> {
-        self.on_pieces.pairs(rows)
-    }
-
-    /// Runs with the fastest serial runs of their images.
-    pub(super) fn with_fastest(&self, rows: impl IntoIterator<Item = &'a Row>) -> Pairs<'a> {
-        self.fastest.pairs(rows)
-    }
-
     /// Pairs each run of a schedule with the serial run on the same pieces.
     pub(super) fn pairs(&self, schedule: &Schedule) -> Pairs<'a> {
-        self.on_pieces(self.rows(schedule).iter().copied())
+        self.on_pieces.pairs(self.rows(schedule).iter().copied())
     }
 
     /// Pairs each run that is not serial with the serial run on the same pieces, in the order of the rows.
     pub(super) fn in_order(&self, results: &'a Results) -> Pairs<'a> {
-        self.on_pieces(results.rows().filter(|row| !row.schedule.is_serial()))
+        self.on_pieces.pairs(results.rows().filter(|row| !row.schedule.is_serial()))
     }
 
     /// The gains of runs over `serial` for the same image in the same repetition.
     pub(super) fn gains(&self, rows: &[&'a Row], value: impl Fn(&Row) -> Option<f64>) -> Repeats {
         // Prefer the serial run on the same pieces: other pieces change at least the caches.
-        let gains = self.on_pieces(rows.iter().copied()).gains(&value);
-        if gains.is_empty() { self.with_fastest(rows.iter().copied()).gains(value) } else { gains }
+        let gains = self.on_pieces.pairs(rows.iter().copied()).gains(&value);
+        if gains.is_empty() { self.fastest.pairs(rows.iter().copied()).gains(value) } else { gains }
     }
 
     /// The speedup of each schedule: the median of the ratios to `serial`.

@@ -156,6 +156,28 @@ fn speedups_compare_the_same_image_with_every_setting() {
     }
 }
 
+/// Two threads on a fast core and one of half its speed use one and a half cores.
+#[test]
+fn efficiency_counts_slow_cores_by_their_capacity() {
+    let row = |repetition: u32, strategy: &str, threads: usize, seconds: f64| {
+        let strategy = strategy.to_string();
+        Record { repetition, strategy, threads, makespan_s: Some(seconds), ..row() }
+    };
+    let rows = (0..2).flat_map(|repetition| [row(repetition, "serial", 1, 3.0), row(repetition, "pool", 2, 2.0)]);
+    let mut results = results(&["speedup"], "", rows.collect()).unwrap();
+    let kinds = serde_json::json!([{"capacity": 1024, "processors": "1"}, {"capacity": 512, "processors": "0"}]);
+    let efficiency = |results: &Results| {
+        let blocks = blocks(results).unwrap();
+        let table = table(&blocks);
+        let place = table.heads().position(|head| head == "efficiency per processor in use").unwrap();
+        table.rows().map(|row| row[place].clone()).collect::<Vec<_>>()
+    };
+    results.run.machine.layout = serde_json::from_value(serde_json::json!({})).unwrap();
+    assert_eq!(efficiency(&results), ["0.750"]);
+    results.run.machine.layout = serde_json::from_value(serde_json::json!({"allowed": "0-1", "kinds": kinds})).unwrap();
+    assert_eq!(efficiency(&results), ["1.000"]);
+}
+
 #[test]
 fn contenders_are_told_apart_by_every_setting_with_a_label() {
     // Each scene has its own contenders.

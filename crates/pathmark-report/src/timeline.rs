@@ -2,7 +2,8 @@
 
 use crate::analysis::balance::{Balance, processors_in_use};
 use crate::measure::{TraceFile, TraceRow, available_threads, schedule_name};
-use crate::plot::gantt::{GanttChart, JobBar, Schedule, Shade};
+use crate::plot::{GanttChart, JobBar, Schedule};
+use crate::words::counted;
 
 /// The balance of a traced run; `None` if its workers or times are impossible.
 pub fn balance(trace: &TraceFile) -> Option<Balance> {
@@ -13,11 +14,9 @@ pub fn balance(trace: &TraceFile) -> Option<Balance> {
 pub fn name(trace: &TraceFile) -> String {
     let settings = &trace.header.settings;
     let strategy = schedule_name(&settings.strategy, &settings.decomposition);
-    let threads = if settings.threads == 1 { "1 thread".to_string() } else { format!("{} threads", settings.threads) };
-    format!("{strategy}, {threads}, {}", settings.decomposition)
+    format!("{strategy}, {}, {}", counted(settings.threads, "thread"), settings.decomposition)
 }
 
-/// The lanes of a traced run.
 pub(super) fn lanes(trace: &TraceFile, balance: &Balance, processors: usize) -> Schedule {
     let bar = |row: &TraceRow| JobBar {
         job: row.job,
@@ -50,12 +49,10 @@ pub(super) fn charts(schedules: Vec<Schedule>, subtitle: String) -> GanttChart {
         subtitle,
         caption: "White is waiting; a frame ends at the makespan.".to_string(),
         label: "milliseconds of the job".to_string(),
-        shade: Shade::Quantile,
         schedules,
     }
 }
 
-/// A chart of one run.
 pub fn chart(trace: &TraceFile) -> GanttChart {
     let settings = &trace.header.settings;
     let spec = &settings.spec;

@@ -5,7 +5,7 @@ use crate::analysis::Interval;
 use std::collections::BTreeSet;
 
 /// A count with its noun: `1 thread`, `2 threads`.
-pub(super) fn counted(count: usize, thing: &str) -> String {
+pub fn counted(count: usize, thing: &str) -> String {
     if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
 }
 
@@ -24,11 +24,6 @@ pub(super) fn bars<T: Into<Estimated>>(told: impl IntoIterator<Item = T>) -> Str
 /// The caption of ratios in pairs.
 pub(super) fn ratio_bars<T: Into<Estimated>>(told: impl IntoIterator<Item = T>) -> String {
     format!("Median of ratios within a repetition. {}", bars(told))
-}
-
-/// A number, or a dash for `None`.
-pub(super) fn number(value: Option<f64>, digits: usize) -> String {
-    value.map_or_else(|| "-".to_string(), |value| format!("{value:.digits$}"))
 }
 
 /// An interval with the confidence that it reaches: few values cannot reach 95 %.

@@ -1,7 +1,7 @@
 //! Independence of the random numbers of different uses: every pair of the first 64.
 
 use super::{LEVEL, Use, all_keyed, first_uses};
-use pathmark::analysis::randomness::correlation::of_uniform;
+use pathmark::analysis::randomness::correlation;
 use pathmark::analysis::z_test::{critical_value, sidak};
 use pathmark::sampling::{REFERENCE_SEEDS, Sampler};
 
@@ -32,7 +32,7 @@ fn uses_do_not_go_together_within_a_pixel() {
             let mut score = scores.iter_mut();
             for index in 0..NUMBERS {
                 for (other, score) in (0..index).zip(score.by_ref()) {
-                    score.push(of_uniform(&all[index], &all[other]));
+                    score.push(correlation(&all[index], &all[other]));
                 }
             }
         }
@@ -68,7 +68,7 @@ fn pixels_and_seeds_share_no_noise() {
                 let image = noise(seeds[0], 0);
                 let others = [noise(seeds[0], 1), noise(seeds[0], WIDTH)].into_iter();
                 for (index, other) in others.chain(seeds[1..].iter().map(|seed| noise(*seed, 0))).enumerate() {
-                    let z = of_uniform(&image, &other);
+                    let z = correlation(&image, &other);
                     assert!(z.abs() < limit, "{name} {used:?} sample {sample}, against {index}: {z} deviations");
                 }
             }

@@ -2,6 +2,7 @@
 //! files.
 
 mod files;
+mod machine;
 mod names;
 mod rounds;
 mod scenes;
@@ -10,7 +11,7 @@ mod selftest;
 mod shards;
 
 use crate::experiment::{TINY, write_tiny};
-use crate::program::{Finished, finish, pathmark};
+use crate::program::{Finished, finish, in_memory, pathmark};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -25,7 +26,7 @@ fn json(text: &str) -> Value {
 
 /// The names that `list KIND` prints.
 fn names(kind: &str) -> Vec<String> {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let listed = json(&run(folder.path(), &["list", kind, "--json"]).out);
     let items = listed.as_array().unwrap_or_else(|| panic!("{kind} is no array"));
     let text = |item: &Value, key: &str| item[key].as_str().filter(|text| !text.is_empty()).map(str::to_string);
@@ -43,7 +44,7 @@ fn record(folder: &Path, scene: &str, options: &[&str]) -> Value {
 
 #[test]
 fn quiet_is_quiet_and_talk_goes_to_stderr() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     write_tiny(folder.path(), TINY);
     let render = ["render", "cornell", "--size", "8x8", "--spp", "4"];
     let sweep = ["run", "tiny.toml", "--out", "out"];
@@ -63,7 +64,7 @@ fn quiet_is_quiet_and_talk_goes_to_stderr() {
 /// The first line of the help is about the program, not about one of its crates.
 #[test]
 fn the_help_begins_with_the_program() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let help = run(folder.path(), &["--help"]).out;
     assert!(help.starts_with("A laboratory for scheduling unequal work on many cores"), "{help}");
 }
@@ -71,7 +72,7 @@ fn the_help_begins_with_the_program() {
 /// A script for each shell names the verbs, and a manual page has a head and the options.
 #[test]
 fn completions_and_manual_pages_know_verbs_and_options() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     for shell in ["bash", "zsh", "fish"] {
         let script = run(folder.path(), &["shell", "completions", shell]).out;
         assert!(

@@ -1,7 +1,7 @@
 //! Every name that `list` prints runs as it is, and no schedule changes a bit.
 
 use super::{json, names, record, run};
-use crate::program::{finish, pathmark};
+use crate::program::{finish, in_memory, pathmark};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
@@ -79,7 +79,7 @@ const COLUMNS: [&str; 39] = [
 
 #[test]
 fn warnings_are_explained_as_rows_have_them() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let all = json(&run(folder.path(), &["list", "warnings", "--json"]).out);
     for entry in all.as_array().unwrap() {
         let [name, about, advice] = ["name", "about", "advice"].map(|key| entry[key].as_str().unwrap());
@@ -92,7 +92,7 @@ fn warnings_are_explained_as_rows_have_them() {
 /// Names of version 0.1 mean what today's names mean.
 #[test]
 fn old_names_are_read() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     for (old, new) in [
         ("bounces", "inspect bounces"),
         ("check", "selftest"),
@@ -125,7 +125,7 @@ fn old_names_are_read() {
 /// Files that `new` writes run as they are, and `new` never replaces an existing file.
 #[test]
 fn starters_run_as_they_are() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     for (kind, name) in [("experiment", "mine"), ("scene", "room.toml")] {
         run(folder.path(), &["new", kind, name]);
         let refused = finish(pathmark(folder.path(), &["new", kind, name])).with_code(2);
@@ -144,7 +144,7 @@ fn every_kind_is_listed_with_name_and_about() {
         assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len(), "{kind}: a name twice in {names:?}");
     }
     // All kinds at once.
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let all = json(&run(folder.path(), &["list", "--json"]).out);
     let kinds: BTreeSet<_> = all.as_array().unwrap().iter().filter_map(|item| item["kind"].as_str()).collect();
     assert_eq!(kinds, BTreeSet::from(KINDS));
@@ -154,7 +154,7 @@ fn every_kind_is_listed_with_name_and_about() {
 
 #[test]
 fn every_listed_name_runs_as_it_is() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     for (kind, option) in [("estimators", "--estimator"), ("samplers", "--sampler"), ("kernels", "--kernel")] {
         for name in names(kind) {
             let column = option.trim_start_matches('-');
@@ -169,7 +169,7 @@ fn every_listed_name_runs_as_it_is() {
 /// A profile runs if it covers the scene; every profile covers a scene of one diffuse ball.
 #[test]
 fn every_effect_profile_runs_and_gives_the_same_image() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let (camera, _) = include_str!("../../../experiments/scenes/cornell.toml").split_once("[[objects]]").unwrap();
     let ball = "[[objects]]\nname = \"ball\"\nshape = { sphere = { center = [50.0, 40.0, 80.0], radius = 20.0 } }\n\
                 material = { diffuse = { albedo = [0.5, 0.5, 0.5] } }\nemission = [1.0, 1.0, 1.0]\n";
@@ -185,7 +185,7 @@ fn every_effect_profile_runs_and_gives_the_same_image() {
 
 #[test]
 fn every_schedule_gives_the_same_checksum() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let mut checksums = BTreeSet::new();
     let mut check = |options: &[&str]| {
         let record = record(folder.path(), "cornell", options);

@@ -1,7 +1,7 @@
 //! Renders in rounds: their reports, their files, and kills in between.
 
 use super::{json, run};
-use crate::program::{finish, pathmark};
+use crate::program::{finish, in_memory, pathmark};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -30,7 +30,7 @@ fn refused(folder: &Path, options: &[&str], said: &[&str]) {
 /// The stopping point is recorded, and a render of as many samples at once has the same checksum.
 #[test]
 fn goals_are_recorded_and_reproduced() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     for (options, column, value) in
         [(["--target-error", "0.3"], "target_error", 0.3), (["--time-limit", "0.05"], "time_limit_s", 0.05)]
     {
@@ -52,7 +52,7 @@ fn goals_are_recorded_and_reproduced() {
 
 #[test]
 fn options_that_contradict_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     refused(folder.path(), &["--spp", "16", "--target-error", "0.3"], &["--spp", "--target-error"]);
     refused(folder.path(), &["--adaptive", "--time-limit", "1"], &["--adaptive", "--time-limit"]);
     refused(folder.path(), &["--adaptive", "--spp", "8"], &["spp", "8", "from 16"]);
@@ -69,7 +69,7 @@ const FEWEST_KILLS: u64 = 5;
 /// Killed (SIGKILL) at growing delays until it finishes, a render gives the image of an undisturbed one.
 #[test]
 fn killed_at_any_instant_it_goes_on_to_the_same_image() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     for goal in [["--spp", "1100"], ["--target-error", "0.042"]] {
         let expected = render(folder.path(), &goal);
         let options = [SIZE.as_slice(), &goal, &["--checkpoint", "box.checkpoint", "-o", "box.pfm", "--json"]].concat();
@@ -110,7 +110,7 @@ fn killed_at_any_instant_it_goes_on_to_the_same_image() {
 /// that finds nothing left to do.
 #[test]
 fn invalid_samples_are_not_forgotten_on_resume() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let lamp = "[[objects]]\nname = \"light\"\nemission = [1e60, 1e60, 1e60]\n";
     fs::write(folder.path().join("bright.toml"), format!("about = \"bright\"\nbase = \"cornell\"\n{lamp}")).unwrap();
     let bright = ["render", "bright.toml", "--size", "24x16", "--precision", "f32", "--json"];
@@ -133,7 +133,7 @@ fn invalid_samples_are_not_forgotten_on_resume() {
 /// A checkpoint can be resumed with more samples, and with no other change of the image.
 #[test]
 fn a_checkpoint_is_of_one_render() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let with = |options: &[&'static str]| [&["--checkpoint", "c"], options].concat();
     render(folder.path(), &with(&["--spp", "20"]));
     let longer = render(folder.path(), &with(&["--spp", "52"]));
@@ -165,7 +165,7 @@ fn a_checkpoint_is_of_one_render() {
 /// A checkpoint that has lost or gained a byte, or is no checkpoint, is refused and kept.
 #[test]
 fn a_damaged_checkpoint_is_refused_and_kept() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let options = ["--checkpoint", "c", "--spp", "40"];
     render(folder.path(), &options);
     let path = folder.path().join("c");
@@ -194,7 +194,7 @@ fn a_damaged_checkpoint_is_refused_and_kept() {
 /// at once.
 #[test]
 fn a_reference_is_refined_and_extended() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let reference = |options: &[&str]| {
         let finished = run(folder.path(), &[&["image", "reference", "cornell", "--size", "24x16"], options].concat());
         let films: Vec<String> = finished.out.lines().take(2).map(str::to_string).collect();

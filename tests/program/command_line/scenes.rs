@@ -2,6 +2,7 @@
 
 use super::{json, run};
 use crate::experiment::{TINY, write_tiny};
+use crate::program::in_memory;
 use pathmark::Lab;
 use pathmark::effect::Effects;
 use pathmark::experiment::{Definition, Profile};
@@ -35,7 +36,7 @@ fn an_experiment_can_take_all_scenes_with_their_own_estimators() {
 
 #[test]
 fn listed_scenes_name_their_effects() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let listed = json(&run(folder.path(), &["list", "scenes", "--json"]).out);
     let text = run(folder.path(), &["list", "scenes"]).out;
     for item in listed.as_array().unwrap() {
@@ -53,7 +54,7 @@ fn listed_scenes_name_their_effects() {
 
 #[test]
 fn a_gallery_shows_each_scene_once() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let text =
         tiny("[\"cornell\", \"spheres\"]", "gallery", "keep = [\"images\"]\n").replace("spp = [4]", "spp = [4, 8]");
     write_tiny(folder.path(), &text);
@@ -121,7 +122,7 @@ fn two_words_for_one_run_are_one_cell() {
 /// The test writes times into the rows, so the ratios are known.
 #[test]
 fn the_price_of_an_effect_is_a_ratio_of_times() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let text = tiny("[\"cornell\", \"cornell-diffuse\"]", "effects", GLASS)
         .replace("spp = [4]", "spp = [4]\nkernel = [\"scalar\"]\neffects = [\"fitting\", \"smallpt\", \"all\"]");
     // A sample takes 1000 ns with the fitting profile, 1100 with the next and 1250 with the largest. Each repetition is
@@ -160,7 +161,7 @@ fn the_price_of_an_effect_is_a_ratio_of_times() {
 /// most accurate scene comes first.
 #[test]
 fn accuracy_by_scene_is_relative_to_its_brightness() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let scenes = "[\"cornell\", \"cornell-diffuse\", \"cornell-mirror\", \"forest\", \"wada\"]";
     let more = "keep = [\"images\"]\n[figure.scene-accuracy.control]\nmatt = \"cornell-diffuse\"\nglass = \"cornell\"\nmirrors = \"cornell-mirror\"\n";
     let text = tiny(scenes, "scene-accuracy", more).replace("seed = [1]", "seed = [1, 2, 3]");
@@ -195,7 +196,7 @@ fn accuracy_by_scene_is_relative_to_its_brightness() {
 /// A mesh with unused parts: reported once, however many objects use the file.
 #[test]
 fn unused_parts_of_a_mesh_are_told_once() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let mesh = "mtllib a.mtl\nv 0 0 0\nv 9 0 0\nv 0 9 0\nvn 0 0 1\nvt 0 0\no one\nusemtl red\nf 1/1/1 2/1/1 3/1/1\no two\nf 1 2 3\n";
     fs::write(folder.path().join("a.obj"), mesh).unwrap();
     let object = |name: &str| {

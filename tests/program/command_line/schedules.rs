@@ -2,6 +2,7 @@
 
 use super::{json, run};
 use crate::experiment::{TINY, write_tiny};
+use crate::program::in_memory;
 use std::fs;
 use std::path::Path;
 
@@ -18,7 +19,7 @@ fn traced(folder: &Path, strategy: &str, threads: &str) {
 
 #[test]
 fn a_trace_has_a_row_for_each_job_and_can_be_drawn() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     traced(folder.path(), "static-cyclic", "2");
     let text = fs::read_to_string(folder.path().join("run.csv")).unwrap();
     let mut lines = text.lines();
@@ -56,7 +57,7 @@ fn drawn(chart: &Path, names: &[&str]) {
 /// Strategies that the user names are drawn, also if their lines are close, in every way to name several.
 #[test]
 fn every_strategy_that_is_named_is_drawn() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     traced(folder.path(), "serial", "1");
     let simulate = ["simulate", "run.csv", "--no-check", "--workers", "1,2,4"];
     let chosen =
@@ -75,7 +76,7 @@ fn every_strategy_that_is_named_is_drawn() {
 /// Predicts this machine, then forecasts others.
 #[test]
 fn a_trace_is_replayed_on_other_machines() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     traced(folder.path(), "serial", "1");
     let chosen = ["--strategies", "static-blocks,shared-counter,dynamic:2", "--workers", "1,2,1000"];
     let said = run(folder.path(), &[&["simulate", "run.csv", "--out", "forecast"][..], &chosen].concat()).out;
@@ -96,7 +97,7 @@ fn a_trace_is_replayed_on_other_machines() {
 /// simulated all the same.
 #[test]
 fn jobs_too_many_for_threads_are_simulated() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let cut = ["--size", "160x120", "--spp", "4", "--decomposition", "tiles:1x1", "--trace", "run.csv"];
     run(folder.path(), &[&["render", "cornell", "--strategy", "serial"][..], &cut].concat());
     let chosen = ["--strategies", "thread-per-job,shared-counter", "--workers", "4"];
@@ -110,7 +111,7 @@ fn jobs_too_many_for_threads_are_simulated() {
 /// An experiment that keeps traces is predicted from its own rows.
 #[test]
 fn an_experiment_with_traces_is_predicted_from_its_rows() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let text =
         TINY.replace("figures = [\"speedup\", ", "keep = [\"traces\", \"calibration\"]\nfigures = [\"forecast\", ");
     write_tiny(folder.path(), &text);
@@ -133,7 +134,7 @@ fn every_figure_makes_do_with_any_rows() {
         .map(|entry| format!("\"{}\"", entry.name))
         .collect();
     let figures = format!("figures = [{}]", names.join(", "));
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let bare = TINY.replace("figures = [\"speedup\", \"schedules\"]", &figures);
     let kept = bare.replace("[matrix]", "keep = [\"traces\", \"calibration\"]\n\n[matrix]");
     let check_page = |out: &str| {

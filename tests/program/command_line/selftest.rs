@@ -1,12 +1,12 @@
 //! Hard cases from the command line, and `--strict`.
 
 use super::{TINY, json, run, write_tiny};
-use crate::program::{finish, pathmark};
+use crate::program::{finish, in_memory, pathmark};
 
 /// Named cases are printed with all their trials; an unknown name is refused with the known ones.
 #[test]
 fn cases_can_be_chosen() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let shown = run(folder.path(), &["selftest", "P10"]).out;
     assert!(shown.contains("P10  pass") && shown.contains("bsdf, NaN: counted: expected"), "{shown}");
     let found = json(&run(folder.path(), &["selftest", "P10", "--json"]).out);
@@ -20,7 +20,7 @@ fn cases_can_be_chosen() {
 /// can be injected.
 #[test]
 fn strict_lets_good_images_pass() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     run(folder.path(), &["render", "cornell", "--size", "8x6", "--spp", "4", "--strict"]);
     write_tiny(folder.path(), TINY);
     run(folder.path(), &["run", "tiny.toml", "--strict"]);

@@ -1,7 +1,7 @@
 //! `render --shard` and `merge`: one image from several machines.
 
 use super::{json, run};
-use crate::program::{finish, pathmark};
+use crate::program::{finish, in_memory, pathmark};
 use std::fs;
 use std::path::Path;
 use std::process::Stdio;
@@ -20,7 +20,7 @@ fn checksum(out: &str) -> String {
 
 #[test]
 fn parts_are_merged_into_the_image() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let expected = checksum(&run(folder.path(), &[SIZE.as_slice(), &["--spp", "48", "--json"]].concat()).out);
     for by in ["samples", "tiles"] {
         for shard in ["3/3", "1/3", "2/3"] {
@@ -58,7 +58,7 @@ fn parts_are_merged_into_the_image() {
 
 #[test]
 fn invalid_shards_are_refused_before_any_work() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let refused = |options: &[&str], said: &[&str]| {
         let finished = finish(pathmark(folder.path(), &[SIZE.as_slice(), options].concat())).with_code(2);
         assert!(said.iter().all(|text| finished.err.contains(text)), "{said:?} is not in {}", finished.err);
@@ -83,7 +83,7 @@ fn invalid_shards_are_refused_before_any_work() {
 /// The variables as SLURM sets them for `--array=3-6`, and for an array with gaps.
 #[test]
 fn a_task_of_an_array_knows_its_shard() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = in_memory();
     let task = |id: &str, count: &str, name: &str, code: i32| {
         let options = ["--spp", "64", "--shard", "auto", "-o", name, "--json"];
         let mut command = pathmark(folder.path(), &[SIZE.as_slice(), &options].concat());
@@ -106,8 +106,8 @@ const FEWEST_KILLS: u64 = 5;
 #[test]
 fn a_killed_part_goes_on_to_the_same_image() {
     for by in ["samples", "tiles"] {
-        let folder = tempfile::tempdir().unwrap();
-        let long = ["--spp", "1200", "--shard-by", by];
+        let folder = in_memory();
+        let long = ["--spp", "480", "--shard-by", by];
         part(folder.path(), "1/2", &long);
         part(folder.path(), "2/2", &long);
         let merged = ["merge", "part-1-of-2.film", "part-2-of-2.film", "-o", "whole.pfm", "--json"];

@@ -1,8 +1,10 @@
 //! F03: one file, one writer. A second process is refused, and the first continues.
 
 use crate::experiment::{TINY, write_tiny};
-use crate::program::{finish, pathmark};
+use crate::program::{finish, pathmark, wait};
 use crate::watchdog::Watchdog;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 use pathmark::lock::{Lock, Sharing, try_lock};
 use std::fs::{self, File};
 use std::path::Path;
@@ -12,13 +14,35 @@ use std::time::Duration;
 const LONG: [&str; 10] =
     ["render", "cornell", "--size", "64x48", "--spp", "4000000", "--checkpoint", "render.checkpoint", "-o", "a.pfm"];
 
-/// Starts a program that would run for hours, and waits for a file that it makes.
-fn running(folder: &Path, arguments: &[&str], file: &str) -> Child {
+/// Starts a program that would run for hours, and stops it as soon as a file is as wanted: it keeps its locks, and
+/// computes nothing meanwhile.
+fn running(folder: &Path, arguments: &[&str], file: &str, is_as_wanted: impl Fn(&Path) -> bool) -> Child {
     let child = pathmark(folder, arguments).spawn().unwrap();
-    while !folder.join(file).exists() {
+    while !is_as_wanted(&folder.join(file)) {
         std::thread::sleep(Duration::from_millis(5));
     }
+    signal(&child, Signal::SIGSTOP);
     child
+}
+
+fn is_locked(path: &Path) -> bool {
+    File::open(path).is_ok_and(|file| file.try_lock_shared().is_err())
+}
+
+fn signal(child: &Child, signal: Signal) {
+    kill(Pid::from_raw(child.id().try_into().unwrap()), signal).unwrap();
+}
+
+/// Commands are refused, each because this file is being written. They run at once, since each of them waits a second
+/// for the lock.
+fn are_refused(folder: &Path, commands: &[(&[&str], &str)]) {
+    let waiting: Vec<Child> =
+        commands.iter().map(|(arguments, _)| pathmark(folder, arguments).spawn().unwrap()).collect();
+    for (child, (arguments, file)) in waiting.into_iter().zip(commands) {
+        let refused = wait(child).with_code(2);
+        let said = format!("{file}: is being written by another process");
+        assert!(refused.err.contains(&said), "{arguments:?}: {}", refused.err);
+    }
 }
 
 /// The number of Pathmark's lock files in a folder.
@@ -30,6 +54,7 @@ fn lock_files(folder: &Path) -> usize {
 }
 
 fn end(mut child: Child) {
+    signal(&child, Signal::SIGCONT);
     assert!(child.try_wait().unwrap().is_none(), "the first process has not gone on");
     child.kill().unwrap();
     child.wait().unwrap();
@@ -39,19 +64,13 @@ fn end(mut child: Child) {
 fn two_renders_do_not_share_a_checkpoint() {
     let _watchdog = Watchdog::new(Duration::from_mins(2));
     let folder = tempfile::tempdir().unwrap();
-    let first = running(folder.path(), &LONG, "render.checkpoint");
+    let first = running(folder.path(), &LONG, "render.checkpoint", Path::exists);
     std::os::unix::fs::symlink("render.checkpoint", folder.path().join("another-name")).unwrap();
-    for name in ["render.checkpoint", "another-name"] {
-        let arguments = LONG.map(|word| match word {
-            "render.checkpoint" => name,
-            "a.pfm" => "b.pfm",
-            word => word,
-        });
-        let second = finish(pathmark(folder.path(), &arguments)).with_code(2);
-        let said = format!("checkpoint = {name}: is being written by another process");
-        assert!(second.err.contains(&said), "{}", second.err);
-        assert!(!folder.path().join("b.pfm").exists());
-    }
+    let second = LONG.map(|word| if word == "a.pfm" { "b.pfm" } else { word });
+    let linked = second.map(|word| if word == "render.checkpoint" { "another-name" } else { word });
+    let [own, other] = ["checkpoint = render.checkpoint", "checkpoint = another-name"];
+    are_refused(folder.path(), &[(&second, own), (&linked, other)]);
+    assert!(!folder.path().join("b.pfm").exists());
     end(first);
     // A lock file of a killed process locks nothing, and the next process that ends by itself removes it. No file of
     // the user has such a name.
@@ -71,14 +90,12 @@ fn two_processes_do_not_render_into_one_folder_of_references() {
     let reference = |spp| ["image", "reference", "cornell", "--size", "64x48", "--out", "references", "--spp", spp];
     fs::create_dir(folder.path().join("references")).unwrap();
     fs::write(folder.path().join("references/.lock"), "the user's").unwrap();
-    let first = running(folder.path(), &reference("4000000"), "references/.pathmark.lock");
-    let second = finish(pathmark(folder.path(), &reference("40"))).with_code(2);
-    assert!(second.err.contains("references = references: is being written by another process"), "{}", second.err);
+    let first = running(folder.path(), &reference("4000000"), "references/.pathmark.lock", is_locked);
     // A sweep that needs a reference is refused, too.
     let text = TINY.replace("[quick]\n", "[reference]\nestimator = \"bsdf\"\n\n[quick]\nreference-spp = 40\n");
     write_tiny(folder.path(), &text);
-    let sweep = finish(pathmark(folder.path(), &["run", "tiny.toml", "--out", "."])).with_code(2);
-    assert!(sweep.err.contains("is being written by another process"), "{}", sweep.err);
+    let sweep = ["run", "tiny.toml", "--out", "."];
+    are_refused(folder.path(), &[(&reference("40"), "references = references"), (&sweep, "references")]);
     end(first);
     finish(pathmark(folder.path(), &reference("40"))).with_code(0);
     assert_eq!(lock_files(&folder.path().join("references")), 0);
@@ -98,17 +115,13 @@ fn reproduce_shares_its_folder_with_nobody() {
     write_tiny(folder.path(), TINY);
     let out = folder.path().join("out");
     let run = ["run", "tiny.toml", "--out", "out"];
-    let refused = |arguments: &[&str]| {
-        let second = finish(pathmark(folder.path(), arguments)).with_code(2);
-        assert!(second.err.contains("out = out: is being written by another process"), "{}", second.err);
-    };
-    let first = running(folder.path(), &["reproduce", "--out", "out"], "out/.pathmark.lock");
-    for second in [&["reproduce", "--out", "out"][..], &["reproduce", "--out", "./out/.", "--resume"]] {
-        let second = finish(pathmark(folder.path(), second)).with_code(2);
-        assert!(second.err.contains("is being written by another process"), "{}", second.err);
-    }
-    refused(&run);
-    refused(&["selftest", "--out", "out"]);
+    let reproduce = ["reproduce", "--out", "out"];
+    let first = running(folder.path(), &reproduce, "out/.pathmark.lock", is_locked);
+    let elsewhere = ["reproduce", "--out", "./out/.", "--resume"];
+    let selftest = ["selftest", "--out", "out"];
+    let all: [(&[&str], &str); 4] =
+        [(&reproduce, "out = out"), (&elsewhere, "out = ./out/."), (&run, "out = out"), (&selftest, "out = out")];
+    are_refused(folder.path(), &all);
     assert!(!out.join("earlier").exists());
     end(first);
     // An empty folder that another process shares to run an experiment.
@@ -116,7 +129,7 @@ fn reproduce_shares_its_folder_with_nobody() {
     fs::create_dir(&out).unwrap();
     let other = Lock::of_folder(&out, "out", Sharing::Shared).unwrap();
     finish(pathmark(folder.path(), &run)).with_code(0);
-    refused(&["reproduce", "--out", "out"]);
+    are_refused(folder.path(), &[(&reproduce, "out = out")]);
     assert!(out.join("tiny/records.csv").exists() && !out.join("earlier").exists());
     drop(other);
     assert_eq!(lock_files(&out), 0);
@@ -125,18 +138,23 @@ fn reproduce_shares_its_folder_with_nobody() {
 #[test]
 fn a_lock_is_taken_by_one_at_a_time_or_shared() {
     let _watchdog = Watchdog::new(Duration::from_mins(1));
+    // At once, since each refusal comes after a second.
+    std::thread::scope(|scope| {
+        for (held, wanted) in
+            [(Sharing::Alone, Sharing::Alone), (Sharing::Alone, Sharing::Shared), (Sharing::Shared, Sharing::Alone)]
+        {
+            scope.spawn(move || {
+                let folder = tempfile::tempdir().unwrap();
+                let _first = Lock::of_folder(folder.path(), "field", held).unwrap();
+                let error = Lock::of_folder(folder.path(), "field", wanted).unwrap_err();
+                assert_eq!(error.exit_code(), 2);
+                let said = format!("field = {}: is being written by another process", folder.path().display());
+                assert!(error.to_string().starts_with(&said), "{error}");
+            });
+        }
+    });
     let folder = tempfile::tempdir().unwrap();
     let take = |sharing| Lock::of_folder(folder.path(), "field", sharing);
-    for (held, wanted) in
-        [(Sharing::Alone, Sharing::Alone), (Sharing::Alone, Sharing::Shared), (Sharing::Shared, Sharing::Alone)]
-    {
-        let first = take(held).unwrap();
-        let error = take(wanted).unwrap_err();
-        assert_eq!(error.exit_code(), 2);
-        let said = format!("field = {}: is being written by another process", folder.path().display());
-        assert!(error.to_string().starts_with(&said), "{error}");
-        drop(first);
-    }
     // Holders of a shared lock release it in any order; the last one removes the file.
     let [first, second] = [(); 2].map(|()| take(Sharing::Shared).unwrap());
     drop(first);
@@ -149,7 +167,7 @@ fn a_lock_is_taken_by_one_at_a_time_or_shared() {
     std::thread::scope(|scope| {
         for _ in 0..4 {
             scope.spawn(|| {
-                for _ in 0..20 {
+                for _ in 0..8 {
                     let Ok(lock) = take(Sharing::Alone) else { continue };
                     assert_eq!(inside.fetch_add(1, std::sync::atomic::Ordering::SeqCst), 0);
                     std::thread::sleep(Duration::from_millis(1));

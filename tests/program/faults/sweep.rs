@@ -20,8 +20,8 @@ pub(crate) fn text() -> String {
 
 /// Whether a column depends on the run alone, not on the machine or its times.
 fn is_fixed(column: &str) -> bool {
-    let measured = ["warnings", "started_utc", "workers_used", "peak_rss_bytes"];
-    !(column.ends_with("_s") || column.ends_with("_switches") || measured.contains(&column))
+    let measured = ["warnings", "started_utc", "workers_used", "peak_rss_bytes", "migrations"];
+    !(["_s", "_switches", "_mhz"].iter().any(|unit| column.ends_with(unit)) || measured.contains(&column))
 }
 
 /// The finished rows in their order, without measured columns.

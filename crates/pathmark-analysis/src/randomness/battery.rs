@@ -1,6 +1,6 @@
 //! Tests of random numbers of 53 bits, like those in batteries of tests of generators (Marsaglia, 1985).
 
-use super::repeats::repeated_words;
+use super::repeated_words;
 use crate::chi_square::{against, even};
 
 /// Tests whether each of the leading six bytes is evenly distributed.

@@ -5,7 +5,6 @@
 //! around their means, the pure error, have n - m degrees of freedom, and the means around the curve have m - q. If the
 //! law holds, the mean square of the means over the mean square of the repetitions follows F(m - q, n - m).
 
-use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use super::{Law, estimator};
@@ -15,20 +14,14 @@ use crate::mean::Moments;
 pub const SIGNIFICANCE: f64 = 0.05;
 
 /// The outcome of the test.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Check {
-    /// The scatter of the repetitions explains the residuals.
-    Passed {
-        /// Probability of residuals at least this large if the law holds.
-        p_value: f64,
-    },
+    /// The scatter of the repetitions explains the residuals. `p_value` is the probability of residuals at least this
+    /// large if the law holds.
+    Passed { p_value: f64 },
     /// The residuals are larger than the scatter explains: the law does not describe the points, whatever its
     /// parameters are.
-    Rejected {
-        /// Probability of residuals at least this large if the law holds.
-        p_value: f64,
-    },
+    Rejected { p_value: f64 },
     /// The law has as many parameters as there are worker counts, so the curve passes through every point.
     NotPossible,
 }

@@ -20,24 +20,20 @@
 
 mod check;
 mod estimator;
-mod reason;
 #[cfg(test)]
 mod tests;
 
-use serde::Serialize;
+use std::fmt;
 
 use super::bootstrap;
 use super::interval::Estimate;
 
 pub use check::{Check, SIGNIFICANCE};
-pub use reason::Reason;
 
 /// Workers p and the speedup of each repetition.
 pub type Point = (usize, Vec<f64>);
 
-/// A law of speedup.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Law {
     /// p / S - 1 = s (p - 1).
     Amdahl,
@@ -47,16 +43,14 @@ pub enum Law {
     Universal,
 }
 
-/// A parameter of a law.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameter {
     pub name: &'static str,
     /// Its value, without a unit, and the bootstrap interval.
     pub estimate: Estimate,
 }
 
-/// A fitted law, with the check of its residuals.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Fitted {
     pub law: Law,
     /// s; or sigma and kappa.
@@ -70,11 +64,8 @@ pub struct Fitted {
     pub worker_counts: usize,
 }
 
-/// The outcome of a fit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Fit {
-    /// A law with its parameters.
     Found(Fitted),
     /// The parameters can't be identified, for this reason.
     Unidentifiable(Reason),
@@ -95,8 +86,8 @@ impl Law {
     }
 }
 
-impl std::fmt::Display for Law {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Display for Law {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Amdahl => "Amdahl's law",
             Self::Gustafson => "Gustafson's law",
@@ -173,4 +164,62 @@ fn peak(workers: &[f64], groups: &[Vec<f64>], level: f64) -> Option<Estimate> {
         (kappa > 0.0 && sigma < 1.0).then(|| [((1.0 - sigma) / kappa).sqrt()])
     };
     bootstrap::of_groups(groups, level, of_sample).map(|[estimate]| estimate)
+}
+
+/// The reason why a fit gives no parameters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Reason {
+    /// A speedup that is not positive and finite, or no worker at all.
+    NotASpeedup,
+    /// Too few different numbers of workers above 1.
+    TooFewWorkerCounts { found: usize, needed: usize },
+    /// Fewer than two repetitions at some number of workers.
+    TooFewRepetitions,
+    /// All repetitions are equal, so they don't show their scatter.
+    NoSpread,
+    /// The interval of a parameter covers all values that the law allows.
+    Open { parameter: Parameter },
+    /// The estimate of a parameter lies outside the range that the law allows, which may end in infinity.
+    OutOfRange { parameter: Parameter, low: f64, high: f64 },
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::NotASpeedup => f.write_str("there is a speedup that is not positive and finite"),
+            Self::TooFewWorkerCounts { found, needed } => {
+                let (be, plural) = if found == 1 { ("is", "") } else { ("are", "s") };
+                write!(f, "there {be} {found} worker count{plural} above 1, and the law needs at least {needed}")
+            }
+            Self::TooFewRepetitions => f.write_str("a worker count has fewer than two repetitions"),
+            Self::NoSpread => {
+                f.write_str("all repetitions are equal, so that nothing tells how far they can be trusted")
+            }
+            Self::Open { parameter } => {
+                write!(f, "{} is open: its interval covers everything that {} can be", parameter, parameter.name)
+            }
+            Self::OutOfRange { parameter, low, high } => {
+                let range = if high.is_finite() { format!("outside {low} to {high}") } else { format!("below {low}") };
+                write!(f, "the estimate {parameter} is {range}")?;
+                let interval = parameter.estimate.interval;
+                let edge = parameter.estimate.value.clamp(low, high);
+                if interval.contains(edge) {
+                    write!(f, ", and the data can't tell it from {edge}")
+                } else if parameter.estimate.value < low {
+                    f.write_str(": the speedups are higher than the law allows")
+                } else {
+                    f.write_str(": the speedups are lower than the law allows")
+                }
+            }
+        }
+    }
+}
+
+/// Writes a parameter with its value and interval.
+impl fmt::Display for Parameter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, estimate: Estimate { value, interval } } = self;
+        let percent = 100.0 * interval.level;
+        write!(f, "{name} = {value:.3} ({percent:.0} % interval {:.3} to {:.3})", interval.low, interval.high)
+    }
 }

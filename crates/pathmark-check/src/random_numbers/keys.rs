@@ -3,7 +3,7 @@
 use super::unguarded::{fmix64, key_of_32_bits, wang_hash, xorshift32};
 use super::{first, keyed};
 use crate::Trials;
-use crate::analysis::randomness::repeats::{repeated, repeated_words};
+use crate::analysis::randomness::{repeated, repeated_words};
 use crate::measure::LARGEST_SEED;
 use crate::sampling::{Address, Purpose, REFERENCE_SEEDS, SampleKey, Sampler, mix};
 

@@ -5,7 +5,7 @@ use super::unguarded::{draw, sequential_state, sequential_stream};
 use super::{first, keyed, worst};
 use crate::analysis::chi_square::{even, score};
 use crate::analysis::randomness::battery::{birthdays, bytes, pairs, ranks, single_bits};
-use crate::analysis::randomness::correlation::of_uniform as correlation;
+use crate::analysis::randomness::correlation;
 use crate::sampling::{Purpose, is_spread};
 use crate::{Trials, critical};
 use rand_pcg::Pcg32;

@@ -3,7 +3,7 @@
 use super::unguarded::{erand48, lcg_of_pixel, smallpt_row};
 use super::{first, keyed, worst};
 use crate::analysis::chi_square::even;
-use crate::analysis::randomness::correlation::of_uniform as correlation;
+use crate::analysis::randomness::correlation;
 use crate::sampling::{Address, Purpose, SampleKey};
 use crate::{Trials, critical};
 use std::collections::BTreeMap;

@@ -3,8 +3,9 @@
 use crate::Trials;
 use crate::analysis::jackknife::{Curve, SeedCurves};
 use crate::analysis::price::{Law, Renderer};
-use crate::analysis::speedup::{Oddity, efficiency, is_superlinear, oddity, serial_fraction, speedup};
-use crate::analysis::superlinear::{Cause, Evidence, cause};
+use crate::analysis::speedup::{
+    Cause, Evidence, Oddity, cause, efficiency, is_superlinear, oddity, serial_fraction, speedup,
+};
 use crate::analysis::{Estimate, Interval};
 use crate::exact::run;
 use crate::film::Film;

@@ -15,14 +15,14 @@ pub(crate) fn lock_folder(out: &Path, sharing: Sharing) -> Result<Lock> {
     Lock::of_folder(out, "out", sharing)
 }
 
-/// A count with its noun: `1 worker`, `2 workers`.
-pub(crate) fn counted(count: usize, thing: &str) -> String {
-    if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
+/// A text of one or more lines for a terminal, with the control characters of names in it escaped.
+pub(super) fn safe(text: &str) -> String {
+    text.split('\n').map(printable).collect::<Vec<_>>().join("\n")
 }
 
-/// Prints a text and a line end. Control characters of names in it are escaped, except the ends of its lines.
+/// Prints a text and a line end.
 pub(crate) fn print(text: &str) -> Result<()> {
-    print_verbatim(&text.split('\n').map(printable).collect::<Vec<_>>().join("\n"))
+    print_verbatim(&safe(text))
 }
 
 /// Prints a text of the program's own, such as a script, and a line end.
@@ -31,6 +31,20 @@ pub(crate) fn print_verbatim(text: &str) -> Result<()> {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Error::system("writing", "standard output", e)),
         _ => Ok(()),
     }
+}
+
+/// Columns under their heads. The first is aligned to the left, the others to the right if `is_of_numbers`.
+pub(crate) fn aligned(heads: Vec<String>, rows: impl IntoIterator<Item = Vec<String>>, is_of_numbers: bool) -> String {
+    let lines: Vec<Vec<String>> = std::iter::once(heads).chain(rows).collect();
+    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..lines[0].len()).map(width).collect();
+    let aligned = |line: &Vec<String>| {
+        let cell = |(column, (text, width)): (usize, (&String, &usize))| {
+            if is_of_numbers && column > 0 { format!("{text:>width$}") } else { format!("{text:width$}") }
+        };
+        line.iter().zip(&widths).enumerate().map(cell).collect::<Vec<_>>().join("  ").trim_end().to_string()
+    };
+    lines.iter().map(aligned).collect::<Vec<_>>().join("\n")
 }
 
 /// Prints a value as one line of JSON. Absent values are `null`; NaN and infinities, for which JSON has no numbers, are

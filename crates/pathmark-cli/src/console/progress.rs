@@ -1,6 +1,7 @@
 //! Progress of long work: a bar with the time left on a terminal, plain lines elsewhere, nothing with `--quiet`.
 
-use crate::error::{Error, printable};
+use super::output::safe;
+use crate::error::Error;
 use crate::experiment::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
@@ -20,11 +21,6 @@ pub(crate) struct Console {
     quiet: bool,
     terminal: bool,
     work: Mutex<Work>,
-}
-
-/// A text of one or more lines for a terminal: names in it may contain control characters.
-fn safe(text: &str) -> String {
-    text.split('\n').map(printable).collect::<Vec<_>>().join("\n")
 }
 
 #[derive(Default)]

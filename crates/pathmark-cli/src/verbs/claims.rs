@@ -1,14 +1,7 @@
 //! `pathmark claims`: the claims of the four reports beside the measurements.
 
-use crate::console::output::{print, print_json};
-use crate::error::{Error, InputError, Result};
-use crate::files::{Files, create_folder};
-use crate::lab::Lab;
-use crate::report::claims::{self, Answer, Report, Verdict, judge};
-use clap::Args;
-use serde::Serialize;
-use std::path::PathBuf;
-use std::sync::Arc;
+use super::prelude::*;
+use crate::report::claims::{self, Answer, Report, judge};
 
 /// `pathmark claims out --report A`
 #[derive(Args)]
@@ -71,7 +64,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
         print_json(&answers.iter().map(row).collect::<Vec<_>>())?;
     } else {
         print(&answers.iter().map(line).collect::<Vec<String>>().join("\n"))?;
-        print(&totals(&answers))?;
+        print(&format!("\n{} claims: {}", answers.len(), claims::totals(&answers)))?;
     }
     let unexpected: Vec<String> =
         answers.iter().filter(|a| a.is_unexpected()).map(|a| a.claim.id.to_string()).collect();
@@ -103,12 +96,4 @@ fn line(answer: &Answer<'_>) -> String {
     };
     let why = if answer.why.is_empty() { String::new() } else { format!("\n        {}", answer.why) };
     format!("{:>3} {}  {:15} {}{numbers}{why}", claim.id, answer.report.report, answer.verdict.to_string(), claim.claim)
-}
-
-/// How many claims have each verdict.
-fn totals(answers: &[Answer<'_>]) -> String {
-    let mut verdicts: Vec<Verdict> = answers.iter().map(|answer| answer.verdict).collect();
-    verdicts.sort_unstable();
-    let counts = verdicts.chunk_by(|a, b| a == b).map(|alike| format!("{} {}", alike.len(), alike[0]));
-    format!("\n{} claims: {}", answers.len(), counts.collect::<Vec<String>>().join(", "))
 }

@@ -1,16 +1,11 @@
 //! `pathmark diff OLD NEW`: which cells got slower, and which are lost?
 
+use super::prelude::*;
 use super::run::note_doubts;
-use crate::console::Console;
-use crate::console::output::{counted, number, print, print_json};
-use crate::error::{Error, Result, printable};
+use crate::error::printable;
 use crate::experiment::{
-    Across, CellDiff, Change, Compared, CountDiff, CountDiffs, Diff, FailedCell, Lost, Progress as _, count_diff, diff,
-    parse_share,
+    Across, CellDiff, Change, Compared, CountDiff, CountDiffs, Diff, FailedCell, Lost, count_diff, diff, parse_share,
 };
-use clap::{Args, ValueEnum};
-use serde_json::{Value, json};
-use std::path::PathBuf;
 
 /// `pathmark diff before/thread-scaling after/thread-scaling --fail-above 3%`
 #[derive(Args)]
@@ -91,7 +86,6 @@ pub(super) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     failed(&problems)
 }
 
-/// Compares counts instead of times.
 fn counts(arguments: &Arguments, limit: f64, console: &Console) -> Result<()> {
     let found = count_diff(&arguments.old, &arguments.new)?;
     let all = || found.experiments.iter().flat_map(|(_, diffs)| &diffs.changed);

@@ -1,14 +1,12 @@
 //! `pathmark list [KIND [NAME]]`: all names that a user can choose from, or one of them.
 
-use crate::console::output::{counted, print, print_json};
-use crate::error::{InputError, Result};
+use super::prelude::*;
 use crate::experiment::{Definition, keys};
 use crate::film::DECOMPOSITIONS;
 use crate::image_io::FORMATS;
 #[cfg(feature = "device")]
 use crate::kernel::{Device, devices};
 use crate::kernel::{KernelEntry, Spec, choose};
-use crate::lab::Lab;
 use crate::material::MATERIALS;
 use crate::measure::{COLUMNS, Column, OUTPUTS, WARNINGS, WarningEntry};
 use crate::metric::METRICS;
@@ -16,15 +14,14 @@ use crate::report::FIGURES;
 use crate::sampling::SAMPLERS;
 use crate::scene::{ACCELERATORS, CAMERAS, FEATURES, FILTERS, GENERATORS, PROFILES, SHAPES, effect_names};
 use crate::simd::LEVELS;
-use clap::{Args, ValueEnum};
-use serde::Serialize;
-use std::sync::Arc;
+use clap::builder::PossibleValuesParser;
 
 /// `pathmark list strategies --json`
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// Kind of names to list [default: all]
-    kind: Option<Kind>,
+    #[arg(value_parser = PossibleValuesParser::new(KINDS.iter().map(|(name, _)| *name)))]
+    kind: Option<String>,
     /// List only this name, such as a warning as it stands in a row, with or without its brackets
     name: Option<String>,
     /// Print an array of objects with name and about
@@ -32,46 +29,10 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Kind {
-    Scenes,
-    Workloads,
-    Strategies,
-    Decompositions,
-    Outputs,
-    Estimators,
-    Samplers,
-    Kernels,
-    Simd,
-    #[cfg(feature = "device")]
-    Devices,
-    Effects,
-    Accelerators,
-    Cameras,
-    Filters,
-    Shapes,
-    Generators,
-    Materials,
-    Features,
-    Metrics,
-    Formats,
-    Experiments,
-    Keys,
-    Figures,
-    Columns,
-    Warnings,
-}
-
-impl Kind {
-    fn name(self) -> String {
-        format!("{self:?}").to_lowercase()
-    }
-}
-
 #[derive(Serialize)]
 struct Item {
     #[serde(skip_serializing_if = "Option::is_none")]
-    kind: Option<String>,
+    kind: Option<&'static str>,
     name: String,
     about: String,
     /// The remedy for a warning.
@@ -101,12 +62,6 @@ fn about_column(column: &Column) -> String {
     format!("{} [{}{unit}{empty}; since schema {}]", column.about.trim(), column.values(), column.since)
 }
 
-/// The name that a driver gives a device, or why there is none.
-#[cfg(feature = "device")]
-fn about_device(device: &Device) -> String {
-    if device.is_there { device.about.clone() } else { format!("none: {}", device.about) }
-}
-
 fn scene_item(lab: &Lab, name: &str) -> Result<Item> {
     let scene = lab.load_scene(name)?;
     let choice = choose(&scene, &Spec::default())?;
@@ -119,71 +74,81 @@ fn scene_item(lab: &Lab, name: &str) -> Result<Item> {
     Ok(Item { scene: Some(more), ..item(name, &scene.about) })
 }
 
-fn items(lab: &Arc<Lab>, kind: Kind) -> Result<Vec<Item>> {
-    Ok(match kind {
-        Kind::Scenes => lab.scenes().map(|name| scene_item(lab, name)).collect::<Result<_>>()?,
-        Kind::Workloads => lab.workloads().iter().map(|entry| item(entry.name, entry.about())).collect(),
-        Kind::Strategies => lab.strategies().iter().map(|entry| item(entry.name, entry.about)).collect(),
-        Kind::Decompositions => DECOMPOSITIONS.iter().map(|entry| item(entry.example, entry.about)).collect(),
-        Kind::Outputs => OUTPUTS.iter().map(|entry| item(entry.name, entry.about)).collect(),
-        Kind::Estimators => lab.estimators().map(|entry| item(entry.name, entry.about)).collect(),
-        Kind::Samplers => SAMPLERS.iter().map(|entry| item(entry.name, entry.about)).collect(),
-        Kind::Kernels => {
-            let named =
-                |entry: &KernelEntry| entry.names().iter().map(|name| item(name, entry.about)).collect::<Vec<_>>();
-            lab.kernels().iter().flat_map(named).collect()
-        }
-        Kind::Simd => LEVELS.iter().map(|level| item(level.name, level.about)).collect(),
-        #[cfg(feature = "device")]
-        Kind::Devices => devices().iter().map(|device| item(&device.id, &about_device(device))).collect(),
-        Kind::Effects => PROFILES.iter().map(|entry| item(entry.name, entry.about)).collect(),
-        Kind::Accelerators => ACCELERATORS.iter().map(|entry| item(entry.name, entry.about)).collect(),
-        Kind::Filters => FILTERS.iter().map(|entry| item(entry.name, entry.about)).collect(),
-        Kind::Cameras => CAMERAS.iter().map(|(name, about)| item(name, about)).collect(),
-        Kind::Shapes => SHAPES.iter().map(|(name, about)| item(name, about)).collect(),
-        Kind::Generators => GENERATORS.iter().map(|(name, about)| item(name, about)).collect(),
-        Kind::Features => FEATURES.iter().map(|entry| item(entry.name, entry.about)).collect(),
-        Kind::Materials => MATERIALS.iter().map(|entry| item(entry.name, entry.about)).collect(),
-        Kind::Metrics => METRICS.iter().map(|entry| item(entry.name, entry.about)).collect(),
-        Kind::Formats => FORMATS.iter().map(|entry| item(entry.name, entry.about)).collect(),
-        Kind::Experiments => {
-            let experiment = |(name, _): (&str, &str)| Ok(item(name, &Definition::load(lab, name)?.title));
-            Definition::known(lab).map(experiment).collect::<Result<_>>()?
-        }
-        Kind::Keys => keys().map(|(key, about)| item(&key, &about)).collect(),
-        Kind::Figures => FIGURES.iter().map(|entry| item(entry.name, entry.about)).collect(),
-        Kind::Columns => COLUMNS.iter().map(|column| item(column.name, &about_column(column))).collect(),
-        Kind::Warnings => {
-            let warning = |entry: &WarningEntry| Item { advice: Some(entry.advice), ..item(entry.name, entry.about) };
-            WARNINGS.iter().map(warning).collect()
-        }
-    })
+/// The items of a table whose entries have a name and a meaning.
+macro_rules! named {
+    ($table:expr) => {
+        |_| Ok($table.iter().map(|entry| item(entry.name, entry.about)).collect())
+    };
 }
 
+/// Lists the items of a kind.
+type Items = fn(&Arc<Lab>) -> Result<Vec<Item>>;
+
+/// Each kind of names.
+const KINDS: &[(&str, Items)] = &[
+    ("scenes", |lab| lab.scenes().map(|name| scene_item(lab, name)).collect()),
+    ("workloads", |lab| Ok(lab.workloads().iter().map(|entry| item(entry.name, entry.about())).collect())),
+    ("strategies", |lab| Ok(lab.strategies().iter().map(|entry| item(entry.name, entry.about)).collect())),
+    ("decompositions", |_| Ok(DECOMPOSITIONS.iter().map(|entry| item(entry.example, entry.about)).collect())),
+    ("outputs", named!(OUTPUTS)),
+    ("estimators", |lab| Ok(lab.estimators().map(|entry| item(entry.name, entry.about)).collect())),
+    ("samplers", named!(SAMPLERS)),
+    ("kernels", |lab| {
+        let named = |entry: &KernelEntry| entry.names().iter().map(|name| item(name, entry.about)).collect::<Vec<_>>();
+        Ok(lab.kernels().iter().flat_map(named).collect())
+    }),
+    ("simd", named!(LEVELS)),
+    #[cfg(feature = "device")]
+    ("devices", |_| {
+        let about = |device: &Device| format!("{}{}", if device.is_there { "" } else { "none: " }, device.about);
+        Ok(devices().iter().map(|device| item(&device.id, &about(device))).collect())
+    }),
+    ("effects", named!(PROFILES)),
+    ("accelerators", named!(ACCELERATORS)),
+    ("cameras", |_| Ok(CAMERAS.iter().map(|(name, about)| item(name, about)).collect())),
+    ("filters", named!(FILTERS)),
+    ("shapes", |_| Ok(SHAPES.iter().map(|(name, about)| item(name, about)).collect())),
+    ("generators", |_| Ok(GENERATORS.iter().map(|(name, about)| item(name, about)).collect())),
+    ("materials", named!(MATERIALS)),
+    ("features", named!(FEATURES)),
+    ("metrics", named!(METRICS)),
+    ("formats", named!(FORMATS)),
+    ("experiments", |lab| {
+        let experiment = |(name, _): (&str, &str)| Ok(item(name, &Definition::load(lab, name)?.title));
+        Definition::known(lab).map(experiment).collect()
+    }),
+    ("keys", |_| Ok(keys().map(|(key, about)| item(&key, &about)).collect())),
+    ("figures", named!(FIGURES)),
+    ("columns", |_| Ok(COLUMNS.iter().map(|column| item(column.name, &about_column(column))).collect())),
+    ("warnings", |_| {
+        let warning = |entry: &WarningEntry| Item { advice: Some(entry.advice), ..item(entry.name, entry.about) };
+        Ok(WARNINGS.iter().map(warning).collect())
+    }),
+];
+
 /// The item of this name. In rows, the numbers of the case follow a warning's name in brackets.
-fn only(mut items: Vec<Item>, kind: Kind, name: &str) -> Result<Item> {
+fn only(mut items: Vec<Item>, kind: &str, name: &str) -> Result<Item> {
     let wanted = name.split('(').next().unwrap_or_default().trim();
     if let Some(place) = items.iter().position(|item| item.name == wanted) {
         return Ok(items.swap_remove(place));
     }
     let names: Vec<String> = items.into_iter().map(|item| item.name).collect();
-    Err(InputError::new("name", name, format!("is none of the {}", kind.name())).allowed(names.join(", ")).into())
+    Err(InputError::new("name", name, format!("is none of the {kind}")).allowed(names.join(", ")).into())
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
-    if let Some(kind) = arguments.kind {
-        let mut items = items(lab, kind)?;
+    if let Some((kind, items)) = KINDS.iter().find(|(name, _)| arguments.kind.as_deref() == Some(name)) {
+        let mut items = items(lab)?;
         if let Some(name) = &arguments.name {
             items = vec![only(items, kind, name)?];
         }
         return if arguments.json { print_json(&items) } else { print(&table(&items)) };
     }
     let mut all = Vec::new();
-    for kind in Kind::value_variants() {
-        let name = kind.name();
-        let listed = items(lab, *kind)?;
+    for (name, items) in KINDS {
+        let listed = items(lab)?;
         if arguments.json {
-            all.extend(listed.into_iter().map(|item| Item { kind: Some(name.clone()), ..item }));
+            all.extend(listed.into_iter().map(|item| Item { kind: Some(name), ..item }));
         } else {
             print(&format!("{name}\n{}\n", table(&listed)))?;
         }

@@ -1,22 +1,14 @@
 //! `pathmark merge PART...`: an image from the parts that `render --shard` made, or a sweep from those of `run --shard`.
 
-use super::image::picture::is_film;
+use super::image::is_film;
+use super::prelude::*;
 use super::strict::Strict;
 use crate::command_line;
-use crate::console::Console;
-use crate::console::output::{print, print_json};
-use crate::error::{InputError, Result};
-use crate::experiment::{MergedSweep, Progress as _, merge_sweeps};
-use crate::files::Files;
+use crate::experiment::{MergedSweep, merge_sweeps};
 use crate::film_file::write_film;
 use crate::image_io;
-use crate::lab::Lab;
 use crate::measure::{Provenance, merge};
 use crate::report;
-use clap::Args;
-use serde_json::json;
-use std::path::PathBuf;
-use std::sync::Arc;
 
 /// `pathmark merge part-*.film -o cornell.exr`, after `pathmark render cornell --shard 1/4 -o part-1.film` and so on
 #[derive(Args)]
@@ -50,7 +42,6 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     }
 }
 
-/// Merges the rows of sweeps from the folders of their parts.
 fn sweeps(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     arguments.strict.refuse("applies to parts of an image; a sweep checks its rows when it measures them")?;
     let merged = merge_sweeps(&arguments.parts, &arguments.output, arguments.partial, &command_line())?;
@@ -77,7 +68,6 @@ fn sweeps(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()
     print(&lines.join("\n"))
 }
 
-/// Merges one image from the files of its parts.
 fn image(arguments: &Arguments, console: &Console) -> Result<()> {
     let Arguments { parts, output, partial, .. } = arguments;
     let as_film = is_film(output);

@@ -1,20 +1,18 @@
 //! The verbs: one file for each, and files that several share.
 
 mod bursts;
-mod cases;
 mod claims;
 mod diff;
-mod guards;
+mod doctor;
 mod image;
 mod inspect;
-mod letters;
 mod list;
+mod machine;
 mod merge;
 mod new;
 mod overall_progress;
-mod plan;
+mod prelude;
 mod price;
-mod profile;
 mod rank;
 mod ranks;
 mod renamed;
@@ -29,14 +27,11 @@ mod shard;
 mod shell;
 mod simulate;
 mod strict;
+mod why;
 
-use crate::console::Console;
-use crate::error::Result;
-use crate::lab::Lab;
-use clap::Subcommand;
+use prelude::*;
+
 pub(super) use renamed::with_new_names;
-use std::path::PathBuf;
-use std::sync::Arc;
 
 #[derive(Subcommand)]
 pub(super) enum Verb {
@@ -53,6 +48,8 @@ pub(super) enum Verb {
     Image(image::Image),
     /// Rank the schedules of an experiment: which can be told apart?
     Rank(rank::Arguments),
+    /// Explain why each schedule is not as many times as fast as it has workers, and what to try.
+    Why(why::Arguments),
     /// Compare two measurements of an experiment: which cells got slower?
     Diff(diff::Arguments),
     /// Predict the samples and seconds that an accuracy costs; --verify checks the prediction by rendering.
@@ -72,6 +69,10 @@ pub(super) enum Verb {
     Claims(claims::Arguments),
     /// Write a commented starter file for an experiment or a scene.
     New(new::Arguments),
+    /// Examine this machine before a sweep: what disturbs measurements, and which differences can be seen?
+    Doctor(doctor::Arguments),
+    /// Show processors, cores, sockets, memory nodes and caches, and which of them may be used.
+    Machine(machine::Arguments),
     /// List all names that options and files accept, or explain one, such as a warning.
     List(list::Arguments),
     /// Print completion scripts and manual pages.
@@ -85,7 +86,6 @@ pub(super) enum Verb {
 }
 
 impl Verb {
-    /// Runs it.
     pub(super) fn run(self, lab: &Arc<Lab>, console: &Console) -> Result<()> {
         match self {
             Self::Reproduce(arguments) => reproduce::run(&arguments, lab, console),
@@ -93,6 +93,7 @@ impl Verb {
             Self::Merge(arguments) => merge::run(&arguments, lab, console),
             Self::Run(arguments) => run::run(&arguments, lab, console),
             Self::Rank(arguments) => rank::run(&arguments, lab, console),
+            Self::Why(arguments) => why::run(&arguments, lab, console),
             Self::Diff(arguments) => diff::run(&arguments, console),
             Self::Price(arguments) => price::run(&arguments, lab, console),
             Self::Bursts(arguments) => bursts::run(&arguments, lab, console),
@@ -104,6 +105,8 @@ impl Verb {
             Self::Selftest(arguments) => selftest::run(&arguments, lab, console),
             Self::Shell(what) => what.run(),
             Self::New(arguments) => new::run(&arguments),
+            Self::Doctor(arguments) => doctor::run(&arguments, lab, console),
+            Self::Machine(arguments) => machine::run(&arguments),
             Self::List(arguments) => list::run(&arguments, lab),
             Self::Cell { file } => crate::experiment::child_main(lab, file.as_deref()),
         }

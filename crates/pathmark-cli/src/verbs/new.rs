@@ -1,12 +1,9 @@
 //! `pathmark new experiment|scene NAME`: a commented file to start from.
 
-use crate::console::output::print;
-use crate::error::{Error, InputError, Result};
+use super::prelude::*;
 use crate::shell;
-use clap::{Args, ValueEnum};
 use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write};
-use std::path::PathBuf;
 
 /// `pathmark new experiment mine`
 #[derive(Args)]
@@ -23,23 +20,11 @@ enum Kind {
     Scene,
 }
 
-impl Kind {
-    fn text(self) -> &'static str {
-        match self {
-            Self::Experiment => include_str!("../../assets/starter-experiment.toml"),
-            Self::Scene => include_str!("../../assets/starter-scene.toml"),
-        }
-    }
-
-    fn verb(self) -> &'static str {
-        match self {
-            Self::Experiment => "run",
-            Self::Scene => "render",
-        }
-    }
-}
-
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
+    let (text, verb) = match arguments.kind {
+        Kind::Experiment => (include_str!("../../assets/starter-experiment.toml"), "run"),
+        Kind::Scene => (include_str!("../../assets/starter-scene.toml"), "render"),
+    };
     if arguments.name.file_name().is_none() || arguments.name.as_os_str().as_encoded_bytes().ends_with(b"/") {
         return Err(InputError::new("name", arguments.name.display().to_string(), "is not the name of a file").into());
     }
@@ -59,6 +44,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         };
         InputError::new("name", &shown, problem).allowed("a new name in a folder that exists").into()
     })?;
-    file.write_all(arguments.kind.text().as_bytes()).map_err(|e| Error::system("writing", &path, e))?;
-    print(&format!("created {shown}; edit it, then run: {}", shell::command([arguments.kind.verb(), &shown])))
+    file.write_all(text.as_bytes()).map_err(|e| Error::system("writing", &path, e))?;
+    print(&format!("created {shown}; edit it, then run: {}", shell::command([verb, &shown])))
 }

@@ -6,26 +6,19 @@
 //! `--estimator all` prices every unbiased estimator. For one estimator, small pilots of the others find out whether
 //! one of them would be faster.
 
-use super::letters::letters;
+use super::prelude::*;
+use super::rank::letters;
 use super::run::note_doubts;
 use super::setting_options::SettingOptions;
-use crate::analysis::price::{Law, Price, Renderer};
+use crate::analysis::price::{Law, Price};
 use crate::analysis::ranking::groups;
 use crate::analysis::tail::Tail;
 use crate::analysis::{Estimate, Interval};
-use crate::console::Console;
-use crate::console::output::{counted, print, print_json};
-use crate::error::{Error, InputError, Result};
-use crate::experiment::{Paid, Pilot, Piloted, Progress as _, law_of, pay};
+use crate::experiment::{Pilot, Piloted, law_of, pay};
 use crate::kernel::Spec;
-use crate::lab::Lab;
-use crate::measure::{LARGEST_SEED, LARGEST_SPP, Settings, TimingConcerns};
-use clap::Args;
-use serde::Serialize;
+use crate::measure::{LARGEST_SEED, LARGEST_SPP, TimingConcerns};
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
-/// Confidence of the intervals.
 const LEVEL: f64 = 0.95;
 
 /// A larger share of the variance in one value of one pixel makes a price doubtful.
@@ -34,7 +27,6 @@ const LARGEST_SHARE: f64 = 0.05;
 /// kurtosis / n.
 const LARGEST_KURTOSIS: f64 = 200.0;
 
-/// The word for all estimators.
 const ALL: &str = "all";
 /// The pilots of other estimators have fewer samples by this factor.
 const SHORTER: u32 = 4;
@@ -80,7 +72,6 @@ struct Row {
     seconds: f64,
     seconds_low: f64,
     seconds_high: f64,
-    /// Seconds for half the error.
     half_rmse_seconds: Option<f64>,
     paid_rmse: Option<f64>,
     paid_seconds: Option<f64>,
@@ -88,7 +79,6 @@ struct Row {
     seconds_ratio: Option<f64>,
     /// With all estimators: the numbers of its groups. Two estimators that share a group cannot be told apart.
     groups: Vec<usize>,
-    /// The tail of the pilot's values.
     #[serde(flatten)]
     tail: Tail,
     /// Seeds of the pilot whose times are in doubt.
@@ -172,12 +162,8 @@ fn price(lab: &Lab, arguments: &Arguments, settings: &Settings, console: &Consol
     let counts = Counts::of(settings, lab.prepare(settings.clone())?.fewest_spp());
     let pilot = Pilot { spp: arguments.pilot_spp, seeds: arguments.pilot_seeds };
     let piloted = pilot.run(lab, settings, LEVEL, console)?;
-    let (tail, doubted_seeds) = (piloted.tail, piloted.doubts.count());
-    let mut rows = Vec::new();
-    for &goal in &arguments.rmse {
-        let row = row(lab, arguments, settings, &piloted.renderer, goal, counts, console)?;
-        rows.push(Row { tail, doubted_seeds, ..row });
-    }
+    let rows = arguments.rmse.iter().map(|goal| row(lab, arguments, settings, &piloted, *goal, counts, console));
+    let rows = rows.collect::<Result<Vec<_>>>()?;
     Ok((piloted, rows))
 }
 
@@ -241,50 +227,45 @@ fn row(
     lab: &Lab,
     arguments: &Arguments,
     settings: &Settings,
-    renderer: &Renderer,
+    piloted: &Piloted,
     goal: f64,
     counts: Counts,
     console: &Console,
 ) -> Result<Row> {
-    let price = renderer.price(goal).ok_or_else(|| {
+    let renderer = &piloted.renderer;
+    let Price { rmse, spp: samples, seconds } = renderer.price(goal).ok_or_else(|| {
         Error::Check(format!("{goal} has no price: the error of {} does not fall with more samples", arguments.scene))
     })?;
-    let wanted = counts.whole(price.spp.value);
+    let wanted = counts.whole(samples.value);
     if wanted > f64::from(LARGEST_SPP) {
         let problem = format!("takes {wanted:.0} samples per pixel, more than the maximum of {LARGEST_SPP}");
         return Err(InputError::new("rmse", goal.to_string(), problem).into());
     }
     let spp = wanted as u32;
     let paid = if arguments.verify { Some(pay(lab, settings, spp, console)?) } else { None };
-    Ok(Row { estimator: settings.spec.estimator.clone(), ..Row::new(&price, (spp, counts), renderer, paid) })
-}
-
-impl Row {
-    fn new(price: &Price, (spp, counts): (u32, Counts), renderer: &Renderer, paid: Option<Paid>) -> Self {
-        let Price { rmse, spp: Estimate { interval: samples, .. }, seconds } = *price;
-        // The rendered samples are rounded up, so the prediction for comparison must use the same number.
-        let expected_s = f64::from(spp) * renderer.seconds_per_spp.value;
-        let expected = renderer.rmse_after(expected_s).map(|error| error.value);
-        Self {
-            estimator: String::new(),
-            rmse,
-            spp,
-            spp_low: samples.low,
-            spp_high: samples.high,
-            seconds: seconds.value * counts.surplus(price.spp.value),
-            seconds_low: seconds.interval.low * counts.surplus(samples.low),
-            seconds_high: seconds.interval.high * counts.surplus(samples.high),
-            half_rmse_seconds: renderer
-                .price(0.5 * rmse)
-                .map(|half| half.seconds.value * counts.surplus(half.spp.value)),
-            paid_rmse: paid.map(|paid| paid.rmse),
-            paid_seconds: paid.map(|paid| paid.seconds),
-            rmse_ratio: paid.zip(expected).map(|(paid, expected)| paid.rmse / expected),
-            seconds_ratio: paid.map(|paid| paid.seconds / expected_s),
-            counts,
-            ..Self::default()
-        }
-    }
+    // The rendered samples are rounded up, so the prediction for comparison must use the same number.
+    let expected_s = f64::from(spp) * renderer.seconds_per_spp.value;
+    let expected = renderer.rmse_after(expected_s).map(|error| error.value);
+    let half = renderer.price(0.5 * rmse);
+    Ok(Row {
+        estimator: settings.spec.estimator.clone(),
+        rmse,
+        spp,
+        spp_low: samples.interval.low,
+        spp_high: samples.interval.high,
+        seconds: seconds.value * counts.surplus(samples.value),
+        seconds_low: seconds.interval.low * counts.surplus(samples.interval.low),
+        seconds_high: seconds.interval.high * counts.surplus(samples.interval.high),
+        half_rmse_seconds: half.map(|half| half.seconds.value * counts.surplus(half.spp.value)),
+        paid_rmse: paid.map(|paid| paid.rmse),
+        paid_seconds: paid.map(|paid| paid.seconds),
+        rmse_ratio: paid.zip(expected).map(|(paid, expected)| paid.rmse / expected),
+        seconds_ratio: paid.map(|paid| paid.seconds / expected_s),
+        groups: Vec::new(),
+        tail: piloted.tail,
+        doubted_seeds: piloted.doubts.count(),
+        counts,
+    })
 }
 
 fn table(settings: &Settings, arguments: &Arguments, piloted: &Piloted, rows: &[Row]) -> String {

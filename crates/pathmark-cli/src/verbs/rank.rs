@@ -1,16 +1,9 @@
 //! `pathmark rank DIR`: which schedules can be told apart?
 
-use super::letters::letters;
+use super::prelude::*;
 use super::run::note_doubts;
-use crate::console::Console;
-use crate::console::output::{counted, number, print, print_json};
-use crate::error::{InputError, Result, printable};
-use crate::experiment::{ImageRanking, Place, Progress as _, Ranking, ranking};
-use crate::lab::Lab;
-use clap::Args;
-use serde_json::{Value, json};
-use std::path::PathBuf;
-use std::sync::Arc;
+use crate::error::printable;
+use crate::experiment::{ImageRanking, Place, Ranking, ranking};
 
 /// `pathmark rank out/thread-scaling --filter threads=2`
 #[derive(Args)]
@@ -106,4 +99,27 @@ fn object(found: &Ranking) -> Value {
         "images": found.images.iter().map(image).collect::<Vec<_>>(), "least_repetitions": found.least_repetitions,
         "doubted_rows": found.doubts.count(), "without_time": found.without_time,
     })
+}
+
+/// The letter of a group: a to z, then aa, ab and so on.
+fn letter(group: usize) -> String {
+    let last = char::from(b'a' + (group % 26) as u8);
+    if group < 26 { last.to_string() } else { format!("{}{last}", letter(group / 26 - 1)) }
+}
+
+/// The letters of an entry's groups: entries that share a letter cannot be told apart.
+pub(super) fn letters(groups: &[usize]) -> String {
+    groups.iter().map(|group| letter(*group)).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_group_has_its_letter() {
+        let found: Vec<String> = [0, 1, 25, 26, 27, 51, 52, 701, 702].into_iter().map(letter).collect();
+        assert_eq!(found, ["a", "b", "z", "aa", "ab", "az", "ba", "zz", "aaa"]);
+        assert_eq!(letters(&[0, 2]), "a c");
+    }
 }

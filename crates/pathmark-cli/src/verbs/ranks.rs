@@ -1,14 +1,10 @@
 //! `mpiexec -n 4 pathmark render SCENE --ranks RULE`: one image by several processes.
 
+use super::prelude::*;
 use super::rounds::{self, Until};
 use crate::cluster::{Cluster, RankRow, Tally};
-use crate::console::Console;
-use crate::error::Result;
-use crate::lab::{Lab, RankRule};
-use crate::measure::{Outcome, Record, Setup};
-use clap::Args;
-use serde::Serialize;
-use std::path::PathBuf;
+use crate::lab::RankRule;
+use crate::measure::{Extend, Outcome};
 
 /// The options of a render by several processes.
 #[derive(Args)]
@@ -23,35 +19,16 @@ pub(super) struct Ranks {
     mpi: Option<PathBuf>,
 }
 
-/// Statistics of the ranks, beside the outcome.
-#[derive(Serialize)]
-pub(super) struct Told {
-    #[serde(skip)]
-    rule: RankRule,
-    #[serde(flatten)]
-    tally: Tally,
-}
-
 /// A record with the statistics of the ranks.
 #[derive(Serialize)]
 pub(super) struct WithRecord<'a> {
     #[serde(flatten)]
-    record: &'a Record,
+    pub(super) record: &'a Record,
     #[serde(flatten)]
-    told: &'a Told,
-}
-
-pub(super) fn with_record<'a>(told: &'a Told, record: &'a Record) -> WithRecord<'a> {
-    WithRecord { record, told }
-}
-
-/// Enters ranks, rule and MPI library into a record.
-pub(super) fn label(told: &Told, record: &mut Record) {
-    told.tally.label(&told.rule, record);
+    pub(super) tally: &'a Tally,
 }
 
 impl Ranks {
-    /// The rule, if there is one.
     pub(super) fn rule(&self, lab: &Lab) -> Result<Option<RankRule>> {
         self.ranks.as_deref().map(|text| lab.rank_rule("ranks", text)).transpose()
     }
@@ -64,21 +41,18 @@ impl Ranks {
         until: &Until,
         spp: u32,
         console: &Console,
-    ) -> Result<Option<(Setup, Outcome, Told)>> {
+    ) -> Result<Option<((Setup, Outcome), Tally)>> {
         let cluster = Cluster::begin(self.mpi.as_deref())?;
-        let done = if until.is_multi_round() {
-            cluster.render_in_rounds(setup, rule, |setup, extend| rounds::render(until, setup, spp, console, extend))?
-        } else {
-            let done = cluster.render(&setup, rule)?;
-            done.map(|(outcome, tally)| ((setup, outcome), tally))
-        };
-        Ok(done.map(|((setup, outcome), tally)| (setup, outcome, Told { rule: rule.clone(), tally })))
+        if until.is_multi_round() {
+            let lead = |setup, extend: Extend<'_>| rounds::render(until, setup, spp, console, extend);
+            return cluster.render_in_rounds(setup, rule, lead);
+        }
+        Ok(cluster.render(&setup, rule)?.map(|(outcome, tally)| ((setup, outcome), tally)))
     }
 }
 
 /// The statistics of each rank, in lines.
-pub(super) fn told(Told { rule, tally }: &Told) -> String {
-    let Tally { ranks: by_rank, gather_s, library } = tally;
+pub(super) fn told(rule: &RankRule, Tally { ranks: by_rank, gather_s, library }: &Tally) -> String {
     let head = format!("{} ranks of {library} by {rule}, gathered in {:.1} ms", by_rank.len(), 1e3 * gather_s);
     let lines = by_rank.iter().map(|RankRow { rank, jobs, requests, busy_s, waiting_s }| {
         format!("rank {rank}: {jobs} jobs in {requests} requests, {busy_s:.3} s busy, {waiting_s:.3} s waiting")

@@ -1,21 +1,13 @@
 //! `pathmark render SCENE`: one image.
 
+use super::prelude::*;
 use super::setting_options::SettingOptions;
 use super::strict::Strict;
 use super::{inspect, ranks, rounds, shard};
-use crate::console::Console;
-use crate::console::output::{counted, print, print_json};
-use crate::error::{InputError, Result};
-use crate::experiment::Progress;
-use crate::files::Files;
 use crate::film::Shard;
 use crate::image_io;
 use crate::kernel::workload::WORKLOAD;
-use crate::lab::Lab;
-use crate::measure::{Outcome, Record, Settings, Setup, TraceFile};
-use clap::Args;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use crate::measure::{Outcome, TraceFile};
 
 /// `pathmark render cornell --spp 64 -o box.png`
 #[derive(Args)]
@@ -80,9 +72,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     let mut clustered = None;
     let (setup, outcome) = if let Some(rule) = arguments.ranks.rule(lab)? {
         let rendered = arguments.ranks.render(&rule, setup, &arguments.rounds, spp, console)?;
-        let Some((setup, outcome, told)) = rendered else { return Ok(()) };
-        clustered = Some(told);
-        (setup, outcome)
+        let Some((rendered, tally)) = rendered else { return Ok(()) };
+        clustered = Some((rule, tally));
+        rendered
     } else if arguments.rounds.is_multi_round() {
         rounds::render(&arguments.rounds, setup, spp, console, &mut |rounds, spp| rounds.extend_to(spp, None))?
     } else {
@@ -102,8 +94,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
 
     let mut record = Record::new(&setup, &outcome);
     arguments.rounds.label(&mut record);
-    if let Some(cluster) = &clustered {
-        ranks::label(cluster, &mut record);
+    if let Some((rule, tally)) = &clustered {
+        tally.label(rule, &mut record);
     }
     for warning in &outcome.warnings {
         console.note(&format!("warning: {warning}"));
@@ -112,17 +104,16 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
         console.note(&inspect::path::command(&arguments.scene, setup.settings(), *sample));
     }
     match (&clustered, arguments.json) {
-        (Some(cluster), true) => print_json(&ranks::with_record(cluster, &record))?,
+        (Some((_, tally)), true) => print_json(&ranks::WithRecord { record: &record, tally })?,
         (None, true) => print_json(&record)?,
         _ => print(&format!("{}: {}", path.display(), summary(&record, &outcome)))?,
     }
-    if let Some(cluster) = clustered.filter(|_| !arguments.json) {
-        print(&ranks::told(&cluster))?;
+    if let Some((rule, tally)) = clustered.filter(|_| !arguments.json) {
+        print(&ranks::told(&rule, &tally))?;
     }
     arguments.strict.check(outcome.counts.invalid)
 }
 
-/// Renders a part of the image into its file.
 fn render_part(arguments: &Arguments, shard: Shard, setup: Setup, console: &Console) -> Result<()> {
     let path = arguments.image.as_deref().unwrap_or(Path::new("part"));
     if image_io::check_format(path).is_ok() {
@@ -138,7 +129,6 @@ fn render_part(arguments: &Arguments, shard: Shard, setup: Setup, console: &Cons
     arguments.strict.check(invalid)
 }
 
-/// The printed summary of a render.
 fn summary(record: &Record, outcome: &Outcome) -> String {
     let Record { width, height, spp, estimator, effects, strategy, decomposition, .. } = record;
     // A workload has neither estimator nor effects, and traces no rays.

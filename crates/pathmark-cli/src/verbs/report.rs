@@ -1,13 +1,7 @@
 //! `pathmark report DIR`: figures and page, drawn again from records.
 
-use crate::console::output::print;
-use crate::error::Result;
-use crate::files::Files;
-use crate::lab::Lab;
+use super::prelude::*;
 use crate::report;
-use clap::Args;
-use std::path::PathBuf;
-use std::sync::Arc;
 
 /// `pathmark report out`
 #[derive(Args)]

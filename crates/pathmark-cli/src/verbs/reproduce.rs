@@ -1,31 +1,27 @@
 //! `pathmark reproduce`: all committed experiments.
 
 use super::overall_progress::OverallProgress;
-use super::plan::Plans;
-use super::run::{check_failures, note_doubts, rows, tell_left_out};
-use super::{cases, guards, profile, strict::Strict};
+use super::prelude::*;
+use super::run::{Size, check_failures, note_doubts, rows, tell_left_out};
+use super::selftest::{claim_guards, has_prices, price_guards, try_cases, write_cases, write_guards};
+use super::{doctor, strict::Strict};
 use crate::cases_file;
 use crate::check::{self, Case, Effort};
 use crate::command_line;
-use crate::console::Console;
-use crate::console::output::{lock_folder, print};
-use crate::error::{Error, Result};
-use crate::experiment::{Definition, Options, Profile, Progress, RecordsFile, Summary, Sweep, Timeout};
-use crate::files::Files;
+use crate::console::output::lock_folder;
+use crate::experiment::{
+    DOCTOR, Definition, Examination, Options, Plan, Power, Prices, Profile, RecordsFile, Summary, Sweep, Timeout,
+};
 use crate::guard_prices::FOLDER;
-use crate::lab::Lab;
 use crate::lock::Sharing;
 use crate::measure::{LeftOut, TimingConcerns, utc_now};
 use crate::report::{self, claims};
-use clap::Args;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// `pathmark reproduce --reports --out results-here`
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    size: profile::Choice,
+    size: Size,
     /// Output folder; results of an earlier run move into its folder `earlier`
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
@@ -72,21 +68,23 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
         return Plans::new(lab, &sweeps)?.print(left_out);
     }
     report::claim("out", &arguments.out, &mut files)?;
+    files.renews("out", &arguments.out.join(DOCTOR), |path| Examination::read(path).is_ok())?;
     let _lock = lock_folder(&arguments.out, Sharing::Alone)?;
     if !arguments.resume {
         put_aside(&arguments.out, lab, console)?;
     }
-    if !guards::are_in(&arguments.out) {
-        guards::claim(&arguments.out, &mut files)?;
+    if !has_prices(&arguments.out) {
+        claim_guards(&arguments.out, &mut files)?;
     }
+    doctor::examine_into(&arguments.out, console)?;
     let Total { rows, failed, timed_out, invalid, left_out, doubts } = run_all(&sweeps, profile, lab, console)?;
     // The cases take longer than a sixth of all quick experiments, so the quick profile leaves them to `selftest --out`.
     if profile != Profile::Quick && !cases_file::is_in(&arguments.out) {
         let all: Vec<&'static Case> = check::cases().collect();
-        cases::write(&arguments.out, &all, &cases::try_all(&all, Effort::Quick, console)?)?;
+        write_cases(&arguments.out, &all, &try_cases(&all, Effort::Quick, console)?)?;
     }
-    if !guards::are_in(&arguments.out) {
-        guards::write(&arguments.out, lab, &guards::measure(console))?;
+    if !has_prices(&arguments.out) {
+        write_guards(&arguments.out, lab, &price_guards(console))?;
     }
     let page = report::write(lab, &arguments.out)?;
     note_doubts(&doubts, console);
@@ -156,7 +154,9 @@ fn put_aside(out: &Path, lab: &Lab, console: &Console) -> Result<()> {
     let earlier = out.join("earlier").join(stamp);
     // Verdicts are of the rows beside them.
     let verdicts = Some(claims::MARKDOWN).filter(|name| claims::is_markdown(&out.join(name)));
-    for name in names.into_iter().chain([FOLDER, cases_file::FOLDER, claims::FOLDER]).chain(verdicts) {
+    let examination = Some(DOCTOR).filter(|name| Examination::read(&out.join(name)).is_ok());
+    let others = [FOLDER, cases_file::FOLDER, claims::FOLDER].into_iter().chain(verdicts).chain(examination);
+    for name in names.into_iter().chain(others) {
         let folder = out.join(name);
         if folder.exists() {
             std::fs::create_dir_all(&earlier).map_err(|e| Error::system("creating", &earlier, e))?;
@@ -166,4 +166,97 @@ fn put_aside(out: &Path, lab: &Lab, console: &Console) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// The plans of all sweeps: the table of `--plan`, and a line before a long run.
+struct Plans {
+    each: Vec<Plan>,
+    kinds: usize,
+    guessed: usize,
+}
+
+impl Plans {
+    /// Renders the pilot and plans all sweeps.
+    fn new(lab: &Lab, sweeps: &[Sweep<'_>]) -> Result<Self> {
+        let mut prices = Prices::new(lab);
+        let each = sweeps.iter().map(|sweep| sweep.plan(&mut prices)).collect::<Result<Vec<_>>>()?;
+        Ok(Self { each, kinds: prices.kinds(), guessed: prices.guessed })
+    }
+
+    fn sum(&self) -> Plan {
+        self.each.iter().fold(Plan::default(), |sum, plan| Plan {
+            name: "all".to_string(),
+            cells: sum.cells + plan.cells,
+            rows: sum.rows + plan.rows,
+            references_s: sum.references_s + plan.references_s,
+            halves: sum.halves + plan.halves,
+            cells_s: sum.cells_s + plan.cells_s,
+            bytes: sum.bytes + plan.bytes,
+        })
+    }
+
+    /// The sum of all plans, in a line.
+    fn told(&self) -> String {
+        let all = self.sum();
+        let (minutes, megabytes) = ((all.seconds() / 60.0).ceil(), megabytes(&all));
+        format!(
+            "about {minutes:.0} min for {} rows of {} experiments and {megabytes:.0} MB, estimated by a pilot of {} renders; existing rows take no time",
+            all.rows,
+            self.each.len(),
+            self.kinds - self.guessed
+        )
+    }
+
+    /// Prints the table of all experiments, and how its seconds were estimated.
+    fn print(&self, left_out: usize) -> Result<()> {
+        let width = self.each.iter().map(|plan| plan.name.len()).max().unwrap_or(0).max(10);
+        let head = format!("{:width$}  {:>6}  {:>6}  {:>8}  {:>8}", "experiment", "cells", "rows", "seconds", "MB");
+        let row = |plan: &Plan| {
+            let (seconds, megabytes) = (plan.seconds(), megabytes(plan));
+            format!("{:width$}  {:>6}  {:>6}  {seconds:>8.0}  {megabytes:>8.1}", plan.name, plan.cells, plan.rows)
+        };
+        print(&head)?;
+        let sum = Some(self.sum()).filter(|_| self.each.len() > 1);
+        for plan in self.each.iter().chain(&sum) {
+            print(&row(plan))?;
+        }
+        let pilot = self.kinds - self.guessed;
+        print(&format!(
+            "Seconds are an estimate: {pilot} small renders on one thread gave the time of a sample, and a cell's samples are divided by the processors \
+             that its threads can use. The cost of schedules, locks and other programs is not included; MB exclude figures."
+        ))?;
+        if self.guessed > 0 {
+            print(&format!(
+                "{} kinds of images were not rendered; the estimate uses the mean of the others.",
+                self.guessed
+            ))?;
+        }
+        if left_out > 0 {
+            print(&format!("{left_out} experiments do not have this profile."))?;
+        }
+        Ok(())
+    }
+}
+
+/// Prints the plan of one experiment, and what pairs of its comparisons reach.
+pub(super) fn print_with_power(lab: &Lab, sweep: &Sweep<'_>) -> Result<()> {
+    Plans::new(lab, std::slice::from_ref(sweep))?.print(0)?;
+    for Power { with, comparisons, round_s, plans } in sweep.power()? {
+        print(&format!("\n{comparisons} comparisons with {with}; a round of all its cells takes {round_s:.2} s"))?;
+        print(&format!("{:>9}  {:>9}  {:>7}  {:>8}", "precision", "processes", "pairs", "seconds"))?;
+        for (share, plan) in plans {
+            let goal = format!("±{:.0} %", 100.0 * share);
+            print(&match plan {
+                Some(plan) => {
+                    format!("{goal:>9}  {:>9}  {:>7}  {:>8.0}", plan.processes, plan.pairs, plan.seconds)
+                }
+                None => format!("{goal:>9}  not within {} processes", 1 << 12),
+            })?;
+        }
+    }
+    Ok(())
+}
+
+fn megabytes(plan: &Plan) -> f64 {
+    plan.bytes as f64 / 1e6
 }

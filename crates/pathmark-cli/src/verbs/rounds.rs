@@ -1,11 +1,7 @@
 //! The options of `render` that render in rounds: until an accuracy, until time is up, with checkpoints.
 
-use crate::console::Console;
-use crate::error::Result;
-use crate::experiment::Progress as _;
-use crate::measure::{CONFIDENCE, Checkpoint, Extend, Goal, Outcome, Record, Rounds, Setup, Warning};
-use clap::Args;
-use std::path::PathBuf;
+use super::prelude::*;
+use crate::measure::{CONFIDENCE, Checkpoint, Extend, Goal, Outcome, Rounds, Warning};
 
 /// Seconds of rendering between two checkpoints. Writing one takes some tenths of a second.
 pub(super) const PAUSE_S: f64 = 10.0;

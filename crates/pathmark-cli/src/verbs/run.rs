@@ -1,22 +1,17 @@
 //! `pathmark run EXPERIMENT`: one experiment, and its report.
 
-use super::{plan, profile, strict::Strict};
+use super::prelude::*;
+use super::reproduce::print_with_power;
+use super::strict::Strict;
 use crate::command_line;
-use crate::console::Console;
-use crate::console::output::{lock_folder, print};
-use crate::error::{Error, Result};
+use crate::console::output::lock_folder;
 use crate::experiment::{
-    Definition, LARGEST_REPETITIONS, Options, Progress, StoppingRule, Sweep, SweepShard, Timeout, baseline_folder,
+    Definition, LARGEST_REPETITIONS, Options, Profile, StoppingRule, Sweep, SweepShard, Timeout, baseline_folder,
 };
-use crate::files::Files;
-use crate::lab::Lab;
 use crate::lock::Sharing;
 use crate::measure::{LeftOut, TimingConcerns};
 use crate::report::{self, check_figures, figure_of_serial};
 use crate::shell;
-use clap::Args;
-use std::path::PathBuf;
-use std::sync::Arc;
 
 /// `pathmark run thread-scaling --filter strategy=rayon --set scene=my/room.toml`
 #[derive(Args)]
@@ -69,9 +64,34 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     timeout: Option<String>,
     #[command(flatten)]
-    size: profile::Choice,
+    size: Size,
     #[command(flatten)]
     strict: Strict,
+}
+
+/// The size at which an experiment is run; at most one of the options is given.
+#[derive(Args)]
+#[group(multiple = false)]
+pub(super) struct Size {
+    /// Small images, minutes (the default)
+    #[arg(long)]
+    quick: bool,
+    /// Larger images, up to hours
+    #[arg(long)]
+    full: bool,
+    /// The sizes and parameters of the reports; all experiments take an hour
+    #[arg(long)]
+    reports: bool,
+}
+
+impl Size {
+    pub(super) fn profile(&self) -> Profile {
+        match (self.full, self.reports) {
+            (true, _) => Profile::Full,
+            (_, true) => Profile::Reports,
+            _ => Profile::Quick,
+        }
+    }
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
@@ -98,7 +118,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     let mut files = Files::default();
     let sweep = Sweep::new(&definition, &options, &mut files)?;
     if arguments.plan {
-        return plan::print_with_power(lab, &sweep);
+        return print_with_power(lab, &sweep);
     }
     report::claim("out", &arguments.out, &mut files)?;
     // Other experiments may run in the same folder, each in its own subfolder; `reproduce` may not.

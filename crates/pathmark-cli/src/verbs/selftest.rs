@@ -1,21 +1,14 @@
 //! `pathmark selftest`: the hard cases on this machine, and the costs of guarding against them.
 
-use super::{cases, guards};
-use crate::cases_file;
-use crate::check::{self, Case, Effort, Outcome, SECTIONS};
-use crate::console::Console;
-use crate::console::output::{lock_folder, print, print_json};
-use crate::error::{Error, InputError, Result};
-use crate::experiment::Progress as _;
-use crate::files::Files;
-use crate::guard_prices::PriceRow;
-use crate::lab::Lab;
+use super::prelude::*;
+use crate::check::guards::GUARDS;
+use crate::check::{self, Case, Effort, Outcome, SECTIONS, case_row};
+use crate::console::output::lock_folder;
+use crate::experiment::{MACHINE, RunFile, read_run_file};
+use crate::guard_prices::{FILE, FOLDER, PriceRow, read_prices, write_prices};
 use crate::lock::{Lock, Sharing};
-use crate::report;
-use clap::Args;
-use serde::Serialize;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use crate::measure::available_threads;
+use crate::{cases_file, report};
 
 /// `pathmark selftest --thorough`
 #[derive(Args)]
@@ -34,7 +27,6 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// A case and its outcome.
 #[derive(Serialize)]
 struct Row<'a> {
     id: &'static str,
@@ -48,15 +40,15 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     let chosen = chosen(&arguments.cases)?;
     let _lock = arguments.out.as_ref().map(|out| folder_for_results(out)).transpose()?;
     let effort = if arguments.thorough { Effort::Thorough } else { Effort::Quick };
-    let outcomes = cases::try_all(&chosen, effort, console)?;
+    let outcomes = try_cases(&chosen, effort, console)?;
     let rows: Vec<Row<'_>> = chosen
         .iter()
         .zip(&outcomes)
         .map(|(case, outcome)| Row { id: case.id, tries: case.tries, pass: outcome.passed(), outcome })
         .collect();
     // Guards are timed alone, only if no cases are named, and once for each folder.
-    let are_priced = arguments.out.as_ref().is_some_and(|out| guards::are_in(out));
-    let prices = if arguments.cases.is_empty() && !are_priced { guards::measure(console) } else { Vec::new() };
+    let are_priced = arguments.out.as_ref().is_some_and(|out| has_prices(out));
+    let prices = if arguments.cases.is_empty() && !are_priced { price_guards(console) } else { Vec::new() };
     if arguments.json {
         print_json(&serde_json::json!({ "cases": rows, "guards": prices }))?;
     } else {
@@ -66,9 +58,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
         }
     }
     if let Some(out) = &arguments.out {
-        cases::write(out, &chosen, &outcomes)?;
+        write_cases(out, &chosen, &outcomes)?;
         if !are_priced {
-            guards::write(out, lab, &prices)?;
+            write_guards(out, lab, &prices)?;
         }
         let written = format!("report in {}", report::write(lab, out)?.display());
         // Standard output holds one JSON object then.
@@ -86,8 +78,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
 /// left the price list there already.
 fn folder_for_results(out: &Path) -> Result<Lock> {
     let mut files = Files::default();
-    if !guards::are_in(out) || guards::read(out)?.is_empty() {
-        guards::claim(out, &mut files)?;
+    if !has_prices(out) || read_prices(&out.join(FOLDER).join(FILE))?.is_empty() {
+        claim_guards(out, &mut files)?;
     }
     cases_file::claim(out, &mut files)?;
     report::claim("out", out, &mut files)?;
@@ -164,4 +156,52 @@ fn price_list(rows: &[PriceRow]) -> String {
         lines.push(format!("    {}: {:.3e} instead of {:.3e}", row.error, row.error_with, row.error_without));
     }
     lines.join("\n")
+}
+
+/// Tries cases on all processors.
+pub(super) fn try_cases(cases: &[&'static Case], effort: Effort, console: &Console) -> Result<Vec<Outcome>> {
+    console.begin("hard cases", cases.len() as u64);
+    let outcomes = check::run(cases, effort, available_threads(), &|done| console.advance(done))?;
+    console.end();
+    Ok(outcomes)
+}
+
+/// Writes the outcomes of some cases into a folder of results.
+pub(super) fn write_cases(out: &Path, cases: &[&'static Case], outcomes: &[Outcome]) -> Result<()> {
+    let rows: Vec<_> = cases.iter().zip(outcomes).map(|(case, outcome)| case_row(case, outcome)).collect();
+    cases_file::write(out, &rows)
+}
+
+/// Whether a folder of results has the price list of the guards already.
+pub(super) fn has_prices(out: &Path) -> bool {
+    out.join(FOLDER).join(FILE).is_file()
+}
+
+/// Measures all guards, one after the other.
+pub(super) fn price_guards(console: &Console) -> Vec<PriceRow> {
+    console.begin("guards", GUARDS.len() as u64);
+    let mut rows = Vec::new();
+    for guard in GUARDS {
+        rows.push(guard.price());
+        console.advance(rows.len() as u64);
+    }
+    console.end();
+    rows
+}
+
+/// Adds the price list to the files that a command will write. Refuses a folder that has one: measurements are never
+/// overwritten.
+pub(super) fn claim_guards(out: &Path, files: &mut Files) -> Result<()> {
+    let folder = out.join(FOLDER);
+    files.renews("out", &folder.join(FILE), |_| false)?;
+    files.renews("out", &folder.join(MACHINE), |path| read_run_file(path).is_ok())
+}
+
+/// Writes the price list into a folder of results, with the command and the machine.
+pub(super) fn write_guards(out: &Path, lab: &Lab, rows: &[PriceRow]) -> Result<()> {
+    let folder = out.join(FOLDER);
+    std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
+    let program = lab.program().join(" ");
+    RunFile { program, ..RunFile::of_now(crate::command_line()) }.write(&folder.join(MACHINE))?;
+    write_prices(&folder.join(FILE), rows)
 }

@@ -1,15 +1,13 @@
 //! The options for the image, its pieces and the schedule, made from the table of axes.
 
-use crate::error::{Error, InputError, Result};
+use super::prelude::*;
 use crate::input::{locate, read_text};
 use crate::kernel::Spec;
-use crate::lab::Lab;
-use crate::measure::{Kind, LARGEST_SEED, SETTINGS, Setting, Settings, THREAD_PER_ROW};
+use crate::measure::{Kind, LARGEST_SEED, SETTINGS, Setting, THREAD_PER_ROW};
 use clap::builder::ValueParser;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
-use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, value_parser};
-use std::path::Path;
+use clap::{Arg, ArgMatches, Command, FromArgMatches, value_parser};
 
 /// The values of the options for *what* is rendered, or of those for pieces and workers.
 pub(super) struct Options<const WHAT: bool> {
@@ -48,9 +46,11 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    /// Settings of these samples, with the default schedule.
-    pub(super) fn settings(&self, lab: &Lab) -> Result<Settings> {
-        self.what.settings(lab, &self.scene, self.spp, self.seed)
+    /// Reads their scene, and prints remarks about it. The schedule is the default one.
+    pub(super) fn prepare(&self, lab: &Arc<Lab>, console: &Console) -> Result<Setup> {
+        let setup = lab.prepare(self.what.settings(lab, &self.scene, self.spp, self.seed)?)?;
+        setup.remarks().iter().for_each(|remark| console.note(remark));
+        Ok(setup)
     }
 }
 
@@ -95,6 +95,11 @@ impl<const WHAT: bool> Args for Options<WHAT> {
             let option = Arg::new(axis.name).long(axis.name).value_name(axis.value_name).help(axis.about);
             let option = option.help_heading(if WHAT { "Image" } else { "Schedule" });
             let option = option.value_parser(parser(axis)).allow_hyphen_values(axis.name == "size");
+            let option = match axis.kind {
+                // `--counters` alone means yes. A value needs `=`, because the next word may be the scene.
+                Kind::Switch => option.num_args(0..=1).require_equals(true).default_missing_value("true"),
+                _ => option,
+            };
             if axis.default.is_empty() { option } else { option.default_value(axis.default) }
         }))
     }

@@ -1,16 +1,10 @@
 //! `render --shard 2/4`: one part of an image, kept in a file for `pathmark merge`.
 
+use super::prelude::*;
 use super::rounds::PAUSE_S;
-use crate::console::Console;
-use crate::console::output::{counted, print, print_json};
-use crate::error::{Error, InputError, Result};
-use crate::experiment::Progress as _;
 use crate::film::{Shard, ShardCut};
-use crate::measure::{Checkpoint, Goal, Rounds, Setup};
-use clap::{Args, ValueEnum};
-use serde_json::json;
+use crate::measure::{Checkpoint, Goal, Rounds};
 use std::env;
-use std::path::Path;
 
 /// The part of an image that a machine renders.
 #[derive(Args)]

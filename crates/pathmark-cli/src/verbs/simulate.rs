@@ -1,24 +1,16 @@
 //! `pathmark simulate TRACE`: replays the jobs of a run on workers that this machine does not have.
 
+use super::prelude::*;
 use super::run::note_doubts;
 use crate::cluster::MessageCosts;
-use crate::console::Console;
-use crate::console::output::print;
-use crate::error::{Error, InputError, Result};
-use crate::experiment::{MESSAGES, Progress, read_calibration};
-use crate::files::{Files, create_folder};
-use crate::lab::Lab;
-use crate::measure::{
-    CalibrationRow, ForeignLoad, SERIAL, Settings, Setup, TimingConcerns, TraceFile, available_threads, calibrate,
-};
+use crate::console::output::aligned;
+use crate::experiment::{MESSAGES, read_calibration};
+use crate::measure::{CalibrationRow, ForeignLoad, SERIAL, TimingConcerns, TraceFile, available_threads, calibrate};
 use crate::report::rank_forecasts::{self, RankPlan};
-use crate::report::{Block, Results, forecasts, save};
+use crate::report::{Block, Results, forecasts};
 use crate::simulate::{
     Contender, Hardware, Messages, Noise, Observed, Prediction, Speeds, contenders, forecast, predict,
 };
-use clap::Args;
-use std::path::PathBuf;
-use std::sync::Arc;
 
 /// `pathmark simulate run.csv --workers 1..4096`, after `pathmark render cornell --strategy serial --trace run.csv`
 #[derive(Args)]
@@ -150,7 +142,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     };
     show(&blocks)?;
     for block in &blocks {
-        save(block, &arguments.out)?;
+        block.save(&arguments.out)?;
     }
     print(&format!("figures and {table} in {}", arguments.out.display()))
 }
@@ -345,36 +337,18 @@ fn predict_live(
     Ok((predict(observed, contenders, processors), doubts))
 }
 
-/// Prints findings and tables.
 fn show(blocks: &[Block]) -> Result<()> {
     for block in blocks {
         match block {
             Block::Finding(text) | Block::Notice(text) => print(&format!("{text}\n"))?,
             Block::Table { table, .. } => {
-                let (heads, rows): (Vec<String>, Vec<_>) =
-                    (table.heads().map(str::to_string).collect(), table.rows().collect());
-                print(&format!("{}\n{}", table.title, aligned(&heads, &rows)))?;
+                let heads = table.heads().map(str::to_string).collect();
+                print(&format!("{}\n{}", table.title, aligned(heads, table.rows(), true)))?;
             }
             Block::Figure { .. } | Block::Picture { .. } => {}
         }
     }
     Ok(())
-}
-
-/// Columns under their heads, the first to the left and the others to the right.
-fn aligned(columns: &[String], rows: &[Vec<String>]) -> String {
-    let width = |column: usize| {
-        rows.iter().map(|row| row[column].chars().count()).chain([columns[column].chars().count()]).max().unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..columns.len()).map(width).collect();
-    let line = |cells: &[String]| {
-        let cell = |(column, text): (usize, &String)| {
-            let width = widths[column];
-            if column == 0 { format!("{text:width$}") } else { format!("{text:>width$}") }
-        };
-        cells.iter().enumerate().map(cell).collect::<Vec<_>>().join("  ")
-    };
-    std::iter::once(line(columns)).chain(rows.iter().map(|row| line(row))).collect::<Vec<_>>().join("\n")
 }
 
 #[cfg(test)]

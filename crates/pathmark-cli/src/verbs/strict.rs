@@ -1,7 +1,6 @@
 //! `--strict`: invalid samples are always left out and reported; with this option they are also a failure.
 
-use crate::error::{Error, InputError, Result};
-use clap::Args;
+use super::prelude::*;
 
 #[derive(Args)]
 pub(super) struct Strict {

@@ -16,11 +16,14 @@ use crate::error::{Error, InputError, Result};
 use crate::film::ProgressiveFilm;
 use crate::kernel::REVISION;
 use crate::lab::RankRule;
+use crate::machine::machine_id;
 use crate::measure::{Extend, MergedShare, Outcome, Record, RoundTimes, Rounds, Setup};
 use hand_out::HandOut;
 pub use message_costs::{MessageCost, MessageCosts};
 use pathmark_mpi::{MpiError, World};
 use serde::Serialize;
+use std::collections::HashMap;
+use std::iter::once;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::slice::from_ref;
@@ -102,7 +105,7 @@ impl Cluster {
     /// and gets the error. A rule that does not fit the ranks is refused before they talk, so MPI's launcher ends them.
     fn agreed(self, setup: &Setup, rule: &RankRule, way: &str) -> Result<Self> {
         rule.check(self.size())?;
-        match self.check_same(setup, rule, way) {
+        match self.check_same(setup, rule, way).and_then(|()| self.check_pins(setup)) {
             Ok(()) => Ok(self),
             Err(error) => {
                 self.world.end().map_err(failed)?;
@@ -114,11 +117,13 @@ impl Cluster {
     fn check_same(&self, setup: &Setup, rule: &RankRule, way: &str) -> Result<()> {
         let settings = setup.settings();
         let text = format!(
-            "{} {REVISION} {:?} {} {} {rule} {way}",
+            "{} {REVISION} {:?} {} {} {rule} {way} {} {}",
             env!("CARGO_PKG_VERSION"),
             setup.film_key(),
             settings.decomposition,
-            settings.threads
+            settings.threads,
+            settings.pin,
+            setup.pins().len()
         );
         let mine = u64::from_str_radix(&digest::of_text(&text), 16).unwrap_or_default();
         let all = self.world.all_gather(&[mine]).map_err(failed)?;
@@ -128,6 +133,25 @@ impl Cluster {
                 let problem = format!("rank {rank} would render something different from rank 0");
                 let error = InputError::new("ranks", rule.to_string(), problem);
                 Err(error.allowed("the same program, scene and options on all ranks").into())
+            }
+        }
+    }
+
+    /// Refuses pins that give one processor to two ranks. Each rank chooses among the processors that its launcher left
+    /// it, and knows nothing of the others on its machine.
+    fn check_pins(&self, setup: &Setup) -> Result<()> {
+        if setup.pins().is_empty() {
+            return Ok(());
+        }
+        let machine = u64::from_str_radix(&digest::of_text(&machine_id()), 16).unwrap_or_default();
+        let row: Vec<u64> = once(machine).chain(setup.pins().iter().map(|cpu| *cpu as u64)).collect();
+        let rows = self.world.all_gather(&row).map_err(failed)?;
+        match shared_cpu(&rows.chunks_exact(row.len()).collect::<Vec<_>>()) {
+            None => Ok(()),
+            Some(([first, second], cpu)) => {
+                let problem = format!("ranks {first} and {second} would both pin a worker to processor {cpu}");
+                let error = InputError::new("pin", setup.settings().pin.to_string(), problem);
+                Err(error.allowed("none, or a launcher that binds each rank to processors of its own").into())
             }
         }
     }
@@ -231,6 +255,15 @@ impl Cluster {
     }
 }
 
+/// Two ranks on one machine that have the same processor, and that processor. A row is the machine of a rank and its
+/// processors.
+fn shared_cpu(rows: &[&[u64]]) -> Option<([usize; 2], u64)> {
+    let mut known = HashMap::new();
+    let all = rows.iter().enumerate().flat_map(|(rank, row)| row[1..].iter().map(move |cpu| (rank, row[0], *cpu)));
+    let mut all = all.filter_map(|(rank, machine, cpu)| Some(([known.insert((machine, cpu), rank)?, rank], cpu)));
+    all.find(|([first, second], _)| first != second)
+}
+
 impl Tally {
     /// Enters ranks, rule and MPI library into a record.
     pub fn label(&self, rule: &RankRule, record: &mut Record) {
@@ -242,5 +275,17 @@ impl Tally {
     fn new(world: &World) -> Self {
         let row = |rank| RankRow { rank, jobs: 0, requests: 0, busy_s: 0.0, waiting_s: 0.0 };
         Self { ranks: (0..world.size()).map(row).collect(), gather_s: 0.0, library: world.version().to_string() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranks_of_one_machine_must_have_different_processors() {
+        assert_eq!(shared_cpu(&[&[7, 0, 1], &[7, 2, 3]]), None);
+        assert_eq!(shared_cpu(&[&[7, 0, 1], &[8, 0, 1]]), None);
+        assert_eq!(shared_cpu(&[&[7, 0, 1], &[8, 0, 1], &[7, 3, 1]]), Some(([0, 2], 1)));
     }
 }

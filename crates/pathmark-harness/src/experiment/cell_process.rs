@@ -61,7 +61,7 @@ pub struct CellJob {
     pub stays: bool,
 }
 
-/// What a process that stays keeps of its first run.
+/// The first run of a process that stays.
 struct Kept {
     setup: Setup,
     first: Record,

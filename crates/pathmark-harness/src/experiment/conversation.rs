@@ -21,7 +21,7 @@ pub(super) struct Conversation {
     errors: Option<JoinHandle<String>>,
 }
 
-/// What a child did after a line.
+/// The outcome of a line for a child.
 pub(super) enum Answer {
     Line(String),
     /// It ended without an answer; with what it wrote to its standard error.

@@ -141,7 +141,7 @@ pub struct Definition {
     pub requires: Vec<String>,
     #[serde(deserialize_with = "one_or_many")]
     pub(super) matrix: Vec<Matrix>,
-    /// What runs side by side.
+    /// The cells that run side by side.
     #[serde(default)]
     pub(super) compare: Vec<Compare>,
     #[serde(default)]

@@ -22,7 +22,7 @@ const MOST: Duration = Duration::from_secs(20);
 const SHARES: [f64; 3] = [0.03, 0.02, 0.01];
 const LEVEL: f64 = 0.95;
 
-/// What a group of cells that run side by side needs.
+/// The pairs that a group of cells needs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Power {
     /// The cell with which most others of the group are compared.

@@ -1,14 +1,17 @@
 //! Pinning: which processor each worker may run on.
 
+use super::affinity::allowed_cpus;
 use super::cpu_list::{cpu_list, parse_cpu_list};
 use super::topology::{Cpu, Topology};
-use crate::error::{Error, InputError, Result};
-use nix::sched::{CpuSet, sched_getaffinity, sched_setaffinity};
-use nix::unistd::Pid;
+use crate::error::{InputError, Result};
+use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::path::Path;
+use std::sync::LazyLock;
 
 /// How workers are assigned to processors.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
 pub enum PinPolicy {
     /// The system moves them as it likes.
     #[default]
@@ -42,23 +45,34 @@ impl fmt::Display for PinPolicy {
 
 impl PinPolicy {
     /// Reads a policy.
-    pub fn parse(text: &str) -> Result<Self> {
-        Ok(match text {
+    pub fn parse(text: &str) -> Option<Self> {
+        Some(match text {
             "none" => Self::None,
             "compact" => Self::Compact,
             "scatter" => Self::Scatter,
             "one-per-core" => Self::OnePerCore,
             "performance" => Self::Performance,
-            _ => match parse_cpu_list(text).filter(|cpus| !cpus.is_empty()) {
-                Some(cpus) => Self::List(cpus),
-                None => return Err(InputError::new("pin", text, "is no policy").allowed(ALLOWED).into()),
-            },
+            _ => Self::List(parse_cpu_list(text).filter(|cpus| !cpus.is_empty())?),
         })
     }
 
-    /// The processor of each worker; empty for [`PinPolicy::None`]. `topology` holds the processors that the process may
-    /// use.
-    pub fn cpus(&self, topology: &Topology, workers: usize) -> Result<Vec<usize>> {
+    /// The error for a text that is no policy.
+    pub(crate) fn refused(text: &str) -> InputError {
+        InputError::new("pin", text, "is neither a policy nor a list of processors").allowed(ALLOWED)
+    }
+
+    /// The processor of each worker of this process; empty for [`PinPolicy::None`].
+    pub fn cpus(&self, workers: usize) -> Result<Vec<usize>> {
+        // Sweeps check thousands of cells, and the machine stays the same.
+        static TOPOLOGY: LazyLock<Topology> = LazyLock::new(|| Topology::read(Path::new("/")));
+        match self {
+            Self::None => Ok(Vec::new()),
+            _ => self.cpus_of(&TOPOLOGY.clone().within(&allowed_cpus()), workers),
+        }
+    }
+
+    /// The same on a machine whose processors this process may use.
+    fn cpus_of(&self, topology: &Topology, workers: usize) -> Result<Vec<usize>> {
         let fastest = topology.kinds().first().copied();
         let order = match self {
             Self::None => return Ok(Vec::new()),
@@ -81,12 +95,12 @@ impl PinPolicy {
             }
         };
         if order.is_empty() {
-            let problem = "the system does not tell its processors, so workers cannot be pinned";
+            let problem = "workers cannot be pinned, because the system does not list its processors";
             return Err(InputError::new("pin", self.to_string(), problem).allowed("none").into());
         }
         if workers > order.len() {
-            let problem = format!("gives {} processors to {workers} workers", order.len());
-            let allowed = format!("at most {} threads, or another policy", order.len());
+            let problem = format!("has a processor for only {} of {workers} workers", order.len());
+            let allowed = format!("up to {} workers, or another policy", order.len());
             return Err(InputError::new("pin", self.to_string(), problem).allowed(allowed).into());
         }
         Ok(order[..workers].to_vec())
@@ -113,20 +127,18 @@ fn scattered(cpus: &[&Cpu]) -> Vec<usize> {
     all.into_iter().map(|cpu| cpu.id).collect()
 }
 
-/// The processors that this thread may run on; empty if the system does not tell.
-pub fn allowed_cpus() -> Vec<usize> {
-    let Ok(set) = sched_getaffinity(Pid::from_raw(0)) else { return Vec::new() };
-    (0..CpuSet::count()).filter(|cpu| set.is_set(*cpu).unwrap_or(false)).collect()
+impl From<PinPolicy> for String {
+    fn from(policy: PinPolicy) -> Self {
+        policy.to_string()
+    }
 }
 
-/// Lets this thread run on these processors only.
-pub fn pin_thread(cpus: &[usize]) -> Result<()> {
-    let failed = |error: nix::Error| Error::system("pinning a thread to", cpu_list(cpus), error.into());
-    let mut set = CpuSet::new();
-    for cpu in cpus {
-        set.set(*cpu).map_err(failed)?;
+impl TryFrom<String> for PinPolicy {
+    type Error = InputError;
+
+    fn try_from(text: String) -> std::result::Result<Self, InputError> {
+        Self::parse(&text).ok_or_else(|| Self::refused(&text))
     }
-    sched_setaffinity(Pid::from_raw(0), &set).map_err(failed)
 }
 
 #[cfg(test)]
@@ -135,11 +147,11 @@ mod tests {
     use super::*;
 
     fn cpus(policy: &str, topology: &Topology, workers: usize) -> Vec<usize> {
-        PinPolicy::parse(policy).unwrap().cpus(topology, workers).unwrap()
+        PinPolicy::parse(policy).unwrap().cpus_of(topology, workers).unwrap()
     }
 
     fn refused(policy: &str, topology: &Topology, workers: usize) -> String {
-        let error = PinPolicy::parse(policy).and_then(|policy| policy.cpus(topology, workers)).unwrap_err();
+        let error = PinPolicy::parse(policy).unwrap().cpus_of(topology, workers).unwrap_err();
         assert_eq!(error.exit_code(), 2);
         error.to_string()
     }
@@ -165,16 +177,17 @@ mod tests {
     fn impossible_requests_are_refused() {
         let folder = two_sockets();
         let topology = Topology::read(folder.path());
-        assert!(refused("one-per-core", &topology, 5).contains("gives 4 processors to 5 workers"));
-        assert!(refused("0-1", &topology, 3).contains("at most 2 threads"));
+        assert!(refused("one-per-core", &topology, 5).contains("only 4 of 5 workers"));
+        assert!(refused("0-1", &topology, 3).contains("up to 2 workers"));
         assert!(refused("0,9", &topology, 1).contains("processor 9"));
         assert!(refused("0", &topology.clone().within(&[1, 2]), 1).contains("allowed: 1-2"));
         for wrong in ["", "far", "1-", "3-1"] {
-            assert!(refused(wrong, &topology, 1).contains("one-per-core"), "{wrong}");
+            assert_eq!(PinPolicy::parse(wrong), None, "{wrong}");
+            assert!(PinPolicy::refused(wrong).to_string().contains("one-per-core"), "{wrong}");
         }
-        assert!(refused("compact", &Topology::default(), 1).contains("does not tell"));
+        assert!(refused("compact", &Topology::default(), 1).contains("does not list its processors"));
         let folder = hybrid();
-        assert!(refused("performance", &Topology::read(folder.path()), 3).contains("gives 2 processors"));
+        assert!(refused("performance", &Topology::read(folder.path()), 3).contains("only 2 of 3 workers"));
     }
 
     #[test]
@@ -182,20 +195,5 @@ mod tests {
         for text in ["none", "compact", "scatter", "one-per-core", "performance", "0-3,8"] {
             assert_eq!(PinPolicy::parse(text).unwrap().to_string(), text);
         }
-    }
-
-    /// A thread of its own, so that the pin ends with it.
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn a_pinned_thread_stays() {
-        let allowed = allowed_cpus();
-        let pinned = std::thread::spawn(move || {
-            pin_thread(&allowed[..1]).unwrap();
-            (allowed_cpus(), allowed[0])
-        });
-        let (now, cpu) = pinned.join().unwrap();
-        assert_eq!(now, [cpu]);
-        let none = std::thread::spawn(|| pin_thread(&[]).unwrap_err().exit_code()).join().unwrap();
-        assert_eq!(none, 3);
     }
 }

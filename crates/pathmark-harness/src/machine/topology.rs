@@ -3,7 +3,7 @@
 //! Libraries for this (hwloc) must be installed; the files are few and stable (Linux, "CPU topology info is exported via
 //! sysfs", Documentation/admin-guide/cputopology.rst).
 
-use super::cpu_list::{cpu_list, parse_cpu_list};
+use super::cpu_list::parse_cpu_list;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
@@ -34,7 +34,7 @@ pub struct Cache {
 }
 
 /// The capacity of the fastest kind of core.
-const FULL: usize = 1024;
+pub(super) const FULL: usize = 1024;
 
 /// The processors that are online, by number.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -98,36 +98,6 @@ impl Topology {
         let kinds: BTreeSet<usize> = self.cpus.iter().map(|cpu| cpu.capacity).collect();
         kinds.into_iter().rev().collect()
     }
-
-    /// Its properties in words, a line each.
-    pub fn lines(&self) -> Vec<String> {
-        if self.cpus.is_empty() {
-            return vec!["topology: the system does not tell it".to_string()];
-        }
-        let count = |part: fn(&Cpu) -> usize| self.cpus.iter().map(part).collect::<BTreeSet<_>>().len();
-        let counted = |count: usize, thing: &str| format!("{count} {thing}{}", if count == 1 { "" } else { "s" });
-        let mut lines = vec![format!(
-            "{} on {} in {}, {}",
-            counted(self.cpus.len(), "processor"),
-            counted(count(|cpu| cpu.core), "core"),
-            counted(count(|cpu| cpu.socket), "socket"),
-            counted(count(|cpu| cpu.node), "memory node"),
-        )];
-        let kinds = self.kinds();
-        for capacity in kinds.iter().filter(|_| kinds.len() > 1) {
-            let own: Vec<usize> = self.cpus.iter().filter(|cpu| cpu.capacity == *capacity).map(|cpu| cpu.id).collect();
-            lines.push(format!("cores of capacity {capacity} of {FULL}: processors {}", cpu_list(&own)));
-        }
-        let mut by_kind: BTreeMap<(u32, &str, &str), Vec<&Cache>> = BTreeMap::new();
-        for cache in &self.caches {
-            by_kind.entry((cache.level, &cache.kind, &cache.size)).or_default().push(cache);
-        }
-        lines.extend(by_kind.into_iter().map(|((level, kind, size), own)| {
-            let kind = if kind == "Unified" { String::new() } else { format!(", {}", kind.to_lowercase()) };
-            format!("level {level} cache{kind}: {} of {size}", own.len())
-        }));
-        lines
-    }
 }
 
 /// The memory node of each processor.
@@ -150,6 +120,7 @@ fn cache(path: &Path) -> Option<Cache> {
 
 #[cfg(test)]
 pub(super) mod tests {
+    use super::super::cpu_list::cpu_list;
     use super::*;
 
     /// Files as a system has them for these processors: (number, siblings, socket, node, capacity).
@@ -218,16 +189,9 @@ pub(super) mod tests {
         let topology = Topology::read(folder.path());
         assert_eq!(topology.cpus[6], Cpu { id: 6, core: 2, socket: 1, node: 1, capacity: 1024 });
         assert_eq!(topology.cores().len(), 4);
-        assert_eq!(
-            topology.lines(),
-            [
-                "8 processors on 4 cores in 2 sockets, 2 memory nodes",
-                "level 1 cache, data: 4 of 32K",
-                "level 2 cache: 4 of 1024K",
-            ]
-        );
-        let few = topology.within(&[1, 5, 99]);
-        assert_eq!(few.lines()[0], "2 processors on 1 core in 1 socket, 1 memory node");
+        assert_eq!(topology.caches.len(), 8);
+        assert_eq!(topology.caches[1].cpus, [1, 5]);
+        assert_eq!(topology.within(&[1, 5, 99]).cores().len(), 1);
     }
 
     #[test]
@@ -235,7 +199,6 @@ pub(super) mod tests {
         let folder = hybrid();
         let topology = Topology::read(folder.path());
         assert_eq!(topology.kinds(), [1024, 446]);
-        assert!(topology.lines().contains(&"cores of capacity 446 of 1024: processors 0-3".to_string()));
         // Intel's list of its slower cores.
         let plain = system(&[(0, "0", 0, 0, None), (1, "1", 0, 0, None)]);
         fs::create_dir_all(plain.path().join("sys/devices/cpu_atom")).unwrap();
@@ -248,6 +211,5 @@ pub(super) mod tests {
         let folder = tempfile::tempdir().unwrap();
         let topology = Topology::read(folder.path());
         assert_eq!(topology, Topology::default());
-        assert!(topology.lines()[0].contains("does not tell"));
     }
 }

@@ -52,7 +52,7 @@ impl Column {
 
     /// The unit of its values, if its name shows it.
     pub fn unit(&self) -> Option<&'static str> {
-        let units = [("_s", "seconds"), ("_bytes", "bytes")];
+        let units = [("_s", "seconds"), ("_bytes", "bytes"), ("_mhz", "megahertz")];
         units.iter().find(|(ending, _)| self.name.ends_with(ending)).map(|(_, unit)| *unit)
     }
 }
@@ -76,7 +76,7 @@ macro_rules! columns {
         pub struct $name {
             $($(#[doc = $f_about])+ pub $f: $f_kind,)*
             $($(#[doc = $i_about])+ $(#[$i_when])? pub $i: <$i_kind as Asked>::Column,)*
-            $($(#[doc = $s_about])+ $(#[$s_when])? pub $s: <$s_kind as Asked>::Column,)*
+            $($(#[doc = $s_about])+ $(#[$s_when])? $(#[$s_read])? pub $s: <$s_kind as Asked>::Column,)*
             $($(#[doc = $l_about])+ pub $l: $l_kind,)*
         }
 

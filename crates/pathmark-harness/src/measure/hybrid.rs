@@ -171,7 +171,7 @@ mod tests {
     #[test]
     fn a_device_renders_the_remaining_pieces() {
         let plan = Decomposition::parse("tiles:4x4").unwrap().plan(40, 20, &(0..16));
-        let (claims, ledger) = (PieceClaims::new(plan.len(), true), Ledger::new(plan.len()));
+        let (claims, ledger) = (PieceClaims::new(plan.len(), true), Ledger::new(plan.len(), &[]));
         assert!(claims.take(7));
         ledger.record(7, Instant::now(), Counts::default);
         let output = Delivered(Mutex::default(), plan.clone());

@@ -1,6 +1,7 @@
 //! The machine and the build of a measurement: seconds mean nothing without them.
 
 use super::provenance::Stamp;
+use crate::machine::Layout;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fs;
@@ -31,6 +32,9 @@ pub struct Machine {
     pub profile: String,
     pub commit: String,
     pub dirty: bool,
+    /// Cores, sockets, memory nodes and caches, and the processors that this process may use. Empty in older files.
+    #[serde(default)]
+    pub layout: Layout,
 }
 
 fn read(path: &str) -> Option<String> {
@@ -87,6 +91,7 @@ impl Machine {
             profile: built_with(env!("PATHMARK_PROFILE")),
             commit: built_with(Stamp::of_program().commit),
             dirty: Stamp::of_program().is_dirty,
+            layout: Layout::here(),
         }
     }
 
@@ -200,8 +205,10 @@ mod tests {
         let mut table = toml::Table::try_from(Machine::look()).unwrap();
         table.remove("cpu_model");
         table.remove("cpu_features");
+        table.remove("layout");
         let old: Machine = table.try_into().unwrap();
         assert_eq!((old.cpu_model.as_str(), old.cpu_features.as_str()), ("", ""));
+        assert_eq!(old.layout, Layout::default());
         // A fact that an old file lacks is no difference.
         assert_eq!((old.difference(&Machine::look()), Machine::look().difference(&old)), (None, None));
     }

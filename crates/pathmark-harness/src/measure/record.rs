@@ -87,6 +87,9 @@ settings_list!(columns {
         /// Seconds that workers spent before their first job and between jobs, over all workers.
         #[since(2)]
         pub idle_between_jobs_s: Option<f64>,
+        /// Seconds from handing over the jobs to each worker's first job, over all workers; part of `idle_between_jobs_s`.
+        #[since(12)]
+        pub idle_before_first_job_s: Option<f64>,
         /// Seconds from each worker's last job to the end of the run, over all workers. Busy time, gaps and tails add up to workers x makespan.
         #[since(2)]
         pub idle_tail_s: Option<f64>,
@@ -108,6 +111,29 @@ settings_list!(columns {
         /// report it.
         #[since(10)]
         pub steal_s: Option<f64>,
+        /// Times that a worker began a job on another processor than its job before. Empty where the system does not report
+        /// it, and for several processes.
+        #[since(12)]
+        pub migrations: Option<u64>,
+        /// Mean clock of the processors before the run, as the system reports it; empty where it does not.
+        #[since(12)]
+        pub clock_start_mhz: Option<f64>,
+        /// Mean clock of the processors after the run.
+        #[since(12)]
+        pub clock_end_mhz: Option<f64>,
+        /// Cycles of the processors in this program during the makespan; like all counters empty without the setting
+        /// `counters`, and where the system does not grant it.
+        #[since(12)]
+        pub cycles: Option<u64>,
+        /// Instructions in this program during the makespan.
+        #[since(12)]
+        pub instructions: Option<u64>,
+        /// Misses of the last cache in this program during the makespan.
+        #[since(12)]
+        pub cache_misses: Option<u64>,
+        /// Mispredicted branches in this program during the makespan.
+        #[since(12)]
+        pub branch_misses: Option<u64>,
         /// Peak resident memory of the process until the last job returned, without merging and writing of images.
         pub peak_rss_bytes: Option<i64>,
         /// Number of paths: the samples of all pixels.
@@ -304,10 +330,15 @@ impl Record {
             record.steal_s = cpu.steal_s;
             record.peak_rss_bytes = cpu.peak_rss_bytes;
         }
+        let observed = &outcome.observed;
+        record.migrations = observed.migrations;
+        [record.clock_start_mhz, record.clock_end_mhz] = observed.clock_mhz;
+        [record.cycles, record.instructions, record.cache_misses, record.branch_misses] = observed.counted;
         if let Some(balance) = &balance {
             record.busy_sum_s = Some(balance.busy_s());
             record.busy_max_s = balance.workers.iter().map(|share| share.busy_s).reduce(f64::max);
             record.idle_between_jobs_s = Some(balance.gap_s());
+            record.idle_before_first_job_s = Some(outcome.trace.starting_s());
             record.idle_tail_s = Some(balance.tail_s());
         }
         record.job_min_s = durations.iter().copied().reduce(f64::min);

@@ -1,8 +1,10 @@
 //! A run: jobs handed to a strategy, once or in several rounds, timed and verified.
 
+use super::counters::Counters;
 use super::history::{History, InvalidSample, first_invalid};
 use super::hybrid::{PieceClaims, Shared};
-use super::ledger::Ledger;
+use super::ledger::{Ledger, migrations};
+use super::observed::{Before, Observed};
 use super::output::{Delivery, Output};
 use super::provenance::Provenance;
 use super::usage::{FOREIGN_SHARE, Usage};
@@ -62,6 +64,7 @@ pub struct Outcome {
     /// When it started; empty if the system's clock shows no date from 1970 to 9999.
     pub started_utc: String,
     pub(super) cpu: Option<Usage>,
+    pub(super) observed: Observed,
 }
 
 impl Outcome {
@@ -131,6 +134,9 @@ pub(super) struct RunTotals {
     pub(super) makespan_s: f64,
     pub(super) merge_s: f64,
     cpu: Option<Usage>,
+    observed: Observed,
+    /// `None` if the settings do not ask for counters.
+    counters: Option<Counters>,
     started_utc: String,
     pub(super) last: RoundTimes,
     /// Memory for the results that are made from the film after all rounds.
@@ -170,17 +176,23 @@ impl RunTotals {
             threads: setup.settings().threads.min(available_threads()),
         })?;
         let claims = PieceClaims::new(plan.len(), !kernel.beside().is_empty());
-        let run = Arc::new(Run { kernel: Arc::clone(&kernel), claims, ledger: Ledger::new(plan.len()), output });
+        let run = Arc::new(Run {
+            kernel: Arc::clone(&kernel),
+            claims,
+            ledger: Ledger::new(plan.len(), setup.pins()),
+            output,
+        });
         let strategy = match &mut self.strategy {
             Some(strategy) => strategy,
             none => {
+                self.counters = setup.settings().counters.then(Counters::open);
                 let before_setup = Instant::now();
                 let strategy = none.insert(setup.new_strategy()?);
                 self.setup_s = before_setup.elapsed().as_secs_f64();
                 strategy
             }
         };
-        let timed = watched(&run, watch, || run.timed(setup, strategy.as_mut(), &plan))?;
+        let mut timed = watched(&run, watch, || run.timed(setup, strategy.as_mut(), &plan, self.counters.as_mut()))?;
         if let Some(failure) = kernel.failure() {
             return Err(failure);
         }
@@ -188,8 +200,10 @@ impl RunTotals {
         let broken = |problem: &str| {
             Error::Check(format!("strategy {} broke its contract: {problem}", setup.settings().strategy))
         };
-        let Run { ledger, output, .. } = Arc::into_inner(run).ok_or_else(|| broken("it has kept the job"))?;
+        let Run { mut ledger, output, .. } = Arc::into_inner(run).ok_or_else(|| broken("it has kept the job"))?;
+        ledger.check_pins()?;
         let entries = ledger.close().map_err(|problem| broken(&problem))?;
+        timed.observed.migrations = migrations(&entries);
         let before_merge = Instant::now();
         let films = output.films();
         let merge_s = before_merge.elapsed().as_secs_f64();
@@ -226,6 +240,7 @@ impl RunTotals {
         self.merge_s += merge_s;
         self.cpu =
             if self.rounds == 1 { timed.cpu } else { self.cpu.zip(timed.cpu).map(|(sum, more)| sum.plus(&more)) };
+        self.observed = if self.rounds == 1 { timed.observed } else { self.observed.plus(&timed.observed) };
         self.last = RoundTimes {
             makespan_s: timed.makespan_s,
             merge_s,
@@ -243,7 +258,7 @@ impl RunTotals {
         if counts.invalid > 0 {
             warnings.push(Warning::InvalidSamples { count: counts.invalid, first: invalid.clone() });
         }
-        warnings.extend(self.time_warnings());
+        warnings.extend(self.time_warnings(setup));
         if self.started_utc.is_empty() {
             warnings.push(Warning::NoDate);
         }
@@ -272,15 +287,19 @@ impl RunTotals {
             merge_s: self.merge_s,
             started_utc: self.started_utc.clone(),
             cpu: self.cpu,
+            observed: self.observed,
         }
     }
 
-    fn time_warnings(&self) -> Vec<Warning> {
+    fn time_warnings(&self, setup: &Setup) -> Vec<Warning> {
         let mut warnings = Vec::new();
         if self.makespan_s < SHORTEST_S {
             warnings.push(Warning::TooShort);
         }
-        let unmeasured = if self.rounds == 0 { Vec::new() } else { Usage::missing(self.cpu.as_ref()) };
+        let mut unmeasured = if self.rounds == 0 { Vec::new() } else { Usage::missing(self.cpu.as_ref()) };
+        if self.rounds > 0 && setup.settings().counters {
+            unmeasured.extend(self.observed.missing_counters());
+        }
         if !unmeasured.is_empty() {
             warnings.push(Warning::Unmeasured(unmeasured));
         }
@@ -328,6 +347,7 @@ struct Run {
 pub(super) struct Timed {
     pub(super) makespan_s: f64,
     pub(super) cpu: Option<Usage>,
+    pub(super) observed: Observed,
 }
 
 pub(super) struct Round<'a> {
@@ -343,8 +363,15 @@ pub(super) struct Round<'a> {
 }
 
 impl Run {
-    fn timed(self: &Arc<Self>, setup: &Setup, strategy: &mut dyn Strategy, plan: &Plan) -> Result<Timed> {
+    fn timed(
+        self: &Arc<Self>,
+        setup: &Setup,
+        strategy: &mut dyn Strategy,
+        plan: &Plan,
+        mut counters: Option<&mut Counters>,
+    ) -> Result<Timed> {
         let shared = Arc::clone(self);
+        let before = Before::now(counters.as_deref_mut());
         let usage = Usage::now();
         let start = Instant::now();
         let job = Arc::new(move |index: usize| {
@@ -353,10 +380,11 @@ impl Run {
                 ledger.record(index, start, || output.render(index, &**kernel));
             }
         });
-        let work = || strategy.run(plan.len(), job).map_err(|error| setup.strategy_error(error));
+        let work = || setup.keeping_affinity(|| strategy.run(plan.len(), job));
         let shared = Shared { plan, claims: &self.claims, ledger: &self.ledger, output: &*self.output };
         shared.beside(self.kernel.beside(), start, work)?;
         let makespan_s = start.elapsed().as_secs_f64();
-        Ok(Timed { makespan_s, cpu: usage.zip(Usage::now()).map(|(before, after)| after.since(&before)) })
+        let cpu = usage.zip(Usage::now()).map(|(before, after)| after.since(&before));
+        Ok(Timed { makespan_s, cpu, observed: before.observed(counters) })
     }
 }

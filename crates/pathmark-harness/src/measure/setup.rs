@@ -10,6 +10,7 @@ use crate::film::{Decomposition, Plan};
 use crate::kernel::workload::Entry as Workload;
 use crate::kernel::{self, Clamped, Counts, CustomEstimator, Kernel, RenderOptions, Spec, Tables};
 use crate::lab::{Lab, RankRule, THREAD_PER_ROW};
+use crate::machine::KeptAffinity;
 use crate::scene::{SUBPIXELS, Scene};
 use crate::settings::check_spp;
 use crate::strategy::{self, Config, Strategy, StrategyError, Workers};
@@ -34,6 +35,8 @@ pub struct Setup {
     strategy: strategy::Entry,
     parameter: Option<String>,
     rank_rule: Option<RankRule>,
+    /// The processor of each worker; empty if workers are not pinned.
+    pins: Vec<usize>,
 }
 
 #[derive(Clone)]
@@ -132,7 +135,7 @@ impl Setup {
         }
         let size = [settings.spec.width, settings.spec.height];
         let plan = cut(&decomposition, &strategy, size, from_ref(&(0..settings.spp)))?;
-        let setup = Self {
+        let mut setup = Self {
             subject,
             built: OnceLock::new(),
             decomposition,
@@ -141,9 +144,11 @@ impl Setup {
             strategy,
             parameter,
             rank_rule,
+            pins: Vec::new(),
             settings,
         };
         setup.check_adaptive()?;
+        setup.pins = setup.settings.pin.cpus(setup.threads())?;
         Ok(setup)
     }
 
@@ -309,7 +314,21 @@ impl Setup {
         self.strategy.build(config).map_err(|error| self.strategy_error(error))
     }
 
-    pub(super) fn strategy_error(&self, error: StrategyError) -> Error {
+    /// The processor of each worker, in the order of their first jobs; empty if workers are not pinned.
+    pub fn pins(&self) -> &[usize] {
+        &self.pins
+    }
+
+    /// Lets a strategy run jobs, and then gives this thread its affinity back: the strategy `serial` runs jobs on it. Other
+    /// threads that were pinned belong to the strategy. They end with it, or are pinned again in its next round.
+    pub(super) fn keeping_affinity(&self, run: impl FnOnce() -> std::result::Result<(), StrategyError>) -> Result<()> {
+        let kept = (!self.pins.is_empty()).then(KeptAffinity::of_thread);
+        let ran = run();
+        drop(kept);
+        ran.map_err(|error| self.strategy_error(error))
+    }
+
+    fn strategy_error(&self, error: StrategyError) -> Error {
         Error::system("running strategy", self.strategy.name, std::io::Error::other(error))
     }
 

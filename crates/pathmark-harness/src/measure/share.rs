@@ -4,6 +4,7 @@
 //! film.
 
 use super::ledger::Ledger;
+use super::observed::Observed;
 use super::run::{Round, RunTotals, Timed};
 use super::{JobSpan, Outcome, Setup};
 use crate::error::{Error, Result};
@@ -105,7 +106,7 @@ impl Share<'_> {
             tiles.push(AtomicCell::new(Some(tile)));
         }
         let (kernel, plan) = (Arc::clone(&self.kernel), Arc::clone(&self.plan));
-        let (count, ledger, start) = (jobs.len(), Ledger::new(jobs.len()), self.start);
+        let (count, ledger, start) = (jobs.len(), Ledger::new(jobs.len(), self.setup.pins()), self.start);
         let handout = Arc::new(Handout { kernel, plan, jobs, tiles, ledger });
         let shared = Arc::clone(&handout);
         let job = Arc::new(move |index: usize| {
@@ -118,15 +119,16 @@ impl Share<'_> {
                 counts
             });
         });
-        self.strategy.run(count, job).map_err(|error| self.setup.strategy_error(error))?;
+        self.setup.keeping_affinity(|| self.strategy.run(count, job))?;
         if let Some(failure) = self.kernel.failure() {
             return Err(failure);
         }
         let broken = |problem: &str| {
             Error::Check(format!("strategy {} broke its contract: {problem}", self.setup.settings().strategy))
         };
-        let Handout { jobs, tiles, ledger, .. } =
+        let Handout { jobs, tiles, mut ledger, .. } =
             Arc::into_inner(handout).ok_or_else(|| broken("it has kept the job"))?;
+        ledger.check_pins()?;
         let entries = ledger.close().map_err(|problem| broken(&problem))?;
         for ((index, entry), tile) in jobs.into_iter().zip(entries).zip(tiles) {
             let tile = tile.take().ok_or_else(|| broken("it has kept a tile"))?;
@@ -187,7 +189,7 @@ impl RunTotals {
             counts,
             workers: u32::try_from(used).unwrap_or(u32::MAX),
             asked: workers.min(plan.len()),
-            timed: Timed { makespan_s, cpu: None },
+            timed: Timed { makespan_s, cpu: None, observed: Observed::default() },
             merge_s: before_merge.elapsed().as_secs_f64(),
         };
         self.enter(setup, &*kernel, round);

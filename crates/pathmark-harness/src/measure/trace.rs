@@ -14,6 +14,7 @@ use crate::error::{Error, InputError, Result};
 use crate::film::{Bounds, Piece};
 use crate::input::{Limits, open_text, unreadable};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::io::ErrorKind::OutOfMemory;
 use std::io::{self, BufRead};
 use std::path::Path;
@@ -48,6 +49,15 @@ impl Trace {
     /// How `workers` workers spent their time in a run of that makespan; `None` for impossible spans.
     pub fn balance(&self, makespan_s: f64, workers: usize) -> Option<Balance> {
         of_spans(self.jobs.iter().map(|job| (job.worker as usize, job.start_s, job.stop_s)), makespan_s, workers)
+    }
+
+    /// Seconds from the run's start to each worker's first job, over all workers that had one.
+    pub fn starting_s(&self) -> f64 {
+        let mut first: BTreeMap<u32, f64> = BTreeMap::new();
+        for JobSpan { worker, start_s, .. } in &self.jobs {
+            first.entry(*worker).and_modify(|first| *first = first.min(*start_s)).or_insert(*start_s);
+        }
+        first.into_values().sum()
     }
 
     pub fn durations_s(&self) -> Vec<f64> {
@@ -186,5 +196,18 @@ impl TraceFile {
             return Err(wrong(1, "workers", &header.workers.to_string(), problem));
         }
         Ok(Self { header, rows })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Worker 1 begins half a second late, and worker 0 has a second job, in any order of the jobs.
+    #[test]
+    fn each_worker_starts_with_its_first_job() {
+        let span = |(worker, start_s): (u32, f64)| JobSpan { worker, start_s, stop_s: start_s + 0.25 };
+        let trace = Trace { jobs: [(0, 1.0), (1, 0.5), (0, 0.125), (1, 0.75)].map(span).to_vec() };
+        assert_eq!((trace.starting_s(), Trace::default().starting_s()), (0.625, 0.0));
     }
 }

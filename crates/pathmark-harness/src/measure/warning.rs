@@ -102,7 +102,7 @@ warnings! {
         "Set the clock; durations are measured with another clock and are correct.";
     Unmeasured(facts: Vec<&'static str>), "unmeasured" + format!("({})", facts.join(", ")),
         "The system does not report the facts in brackets: their columns are empty, and no row is in doubt because of them.",
-        "Measure on Linux if you need them; without the load of other programs, make sure that there is none.";
+        "Measure on Linux if you need them; without the load of other programs, make sure that there is none. Counters need a kernel that grants them (`kernel.perf_event_paranoid` of 2 or less), and most virtual machines have none.";
     DebugBuild, "debug-build",
         "The program was built without release optimisation.",
         "Measure with `cargo run --release`.";

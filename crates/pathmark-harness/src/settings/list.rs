@@ -108,6 +108,14 @@ macro_rules! settings_list {
             /// Acceleration structure: `none`, `median` or `sah`.
             spec accelerator: Option<String>, Setting { nested: 16, since: 3, of_light: true, label: "{}",
                 value_name: "NAME", about: "Acceleration structure [default: chosen by the number of primitives]", ..Setting::NEW };
+            /// Policy by which each worker was pinned to a processor; empty if workers were not pinned.
+            own pin: crate::machine::PinPolicy = crate::machine::PinPolicy::None, Setting { nested: 25, since: 12, label: "pin {}", absent: "not pinned",
+                value_name: "POLICY", about: "Pin each worker to a processor: none, compact, scatter, one-per-core, performance, or a list such as 0-3,8", default: "none", ..Setting::NEW },
+                read serde(default);
+            /// Whether the processor's counters were read.
+            own counters: bool = false, Setting { nested: 26, since: 12, word: "/counters", label: "with counters", absent: "without counters",
+                value_name: "BOOL", about: "Read the processor's counters (cycles, instructions, misses), which makes the start of threads slower [default: false]", ..Setting::NEW },
+                read serde(default);
         }
     } };
 }

@@ -95,11 +95,8 @@ impl Setting {
     }
 
     pub fn set(&self, settings: &mut Settings, text: &str) -> Result<()> {
-        match (self.field)(settings).set(text) {
-            Some(()) => Ok(()),
-            None if self.name == SIZE => Err(not_a_size(text).into()),
-            None => Err(InputError::new(self.name, text, "is out of range").into()),
-        }
+        let value = (self.field)(settings);
+        value.set(text).ok_or_else(|| value.refused(self.name, text).into())
     }
 
     /// Its value as text; empty if it is left to the scene or the estimator.
@@ -191,7 +188,7 @@ pub fn schedule_columns() -> impl Iterator<Item = &'static str> {
     SETTINGS.iter().filter(|setting| !setting.changes_image).flat_map(Setting::columns)
 }
 
-fn not_a_size(text: &str) -> InputError {
+pub(super) fn not_a_size(text: &str) -> InputError {
     InputError::new(SIZE, text, "is not a size").allowed("WxH, for example 640x480")
 }
 

@@ -1,7 +1,9 @@
 //! The types of settings: what a user says, the column of a row that keeps it, and both as text.
 
-use super::table::parse_size;
+use super::table::{not_a_size, parse_size};
+use crate::error::InputError;
 use crate::kernel::Spec;
+use crate::machine::PinPolicy;
 use std::str::FromStr;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,6 +21,10 @@ pub enum Kind {
 
 pub(crate) trait Value {
     fn set(&mut self, text: &str) -> Option<()>;
+    /// The error for a text that `set` refuses.
+    fn refused(&self, name: &str, text: &str) -> InputError {
+        InputError::new(name, text, "is out of range")
+    }
     /// Empty if it is left to the scene or the estimator.
     fn show(&self) -> String;
 }
@@ -114,10 +120,48 @@ impl<T: FromStr + ToString> Value for Option<T> {
     }
 }
 
+/// Rows keep nothing if workers were not pinned.
+impl Asked for PinPolicy {
+    type Column = String;
+    const COLUMN: &'static str = "String";
+    const KIND: Kind = Kind::Name;
+
+    fn column(&self) -> String {
+        if *self == Self::None { String::new() } else { self.to_string() }
+    }
+
+    fn of(column: String) -> Self {
+        Self::parse(&column).unwrap_or_default()
+    }
+
+    fn text(column: &String) -> Option<String> {
+        Some(column.clone()).filter(|policy| !policy.is_empty())
+    }
+}
+
+impl Value for PinPolicy {
+    fn set(&mut self, text: &str) -> Option<()> {
+        *self = Self::parse(text)?;
+        Some(())
+    }
+
+    fn refused(&self, _: &str, text: &str) -> InputError {
+        Self::refused(text)
+    }
+
+    fn show(&self) -> String {
+        self.to_string()
+    }
+}
+
 impl Value for Spec {
     fn set(&mut self, text: &str) -> Option<()> {
         (self.width, self.height) = parse_size(text).ok()?;
         Some(())
+    }
+
+    fn refused(&self, _: &str, text: &str) -> InputError {
+        not_a_size(text)
     }
 
     fn show(&self) -> String {

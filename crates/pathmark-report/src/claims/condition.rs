@@ -9,7 +9,6 @@ use std::ops::Deref;
 /// A row by its columns, as `records.csv` writes them.
 pub(super) type Columns = serde_json::Map<String, serde_json::Value>;
 
-/// A row's columns.
 pub(super) fn columns(record: &Record) -> Columns {
     match serde_json::to_value(record) {
         Ok(serde_json::Value::Object(columns)) => columns,

@@ -27,6 +27,7 @@
 
 use super::condition::Conditions;
 use super::statistic::Statistic;
+use super::verdict::{NAMES, Verdict};
 use crate::error::{Error, InputError, Result};
 use crate::experiment;
 use crate::input::{locate, parse};
@@ -45,7 +46,7 @@ pub struct Report {
     pub claims: Vec<Claim>,
 }
 
-/// A claim as it is written; [`Claim::evidence`] says how it is judged.
+/// A claim as it is written; `Claim::test` says how it is judged.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct Claim {
@@ -83,20 +84,9 @@ pub struct Claim {
     test: Option<Test>,
 }
 
-/// The evidence that a claim is judged by.
-#[derive(Debug, Clone, Copy)]
-pub enum Evidence<'a> {
-    /// There is nothing to measure, for this reason.
-    Context(&'a str),
-    /// No rows exist yet, for this reason.
-    Missing(&'a str),
-    /// A statistic to compare with the prediction.
-    Test(&'a Test),
-}
-
 /// A statistic of measured rows, and the values that the report's claim predicts for it.
 #[derive(Debug)]
-pub struct Test {
+pub(super) struct Test {
     pub(super) statistic: Statistic,
     /// The ends of the prediction; a side without a limit is infinite.
     pub(super) predicted: [f64; 2],
@@ -107,12 +97,11 @@ pub struct Test {
 }
 
 impl Claim {
-    pub fn evidence(&self) -> Evidence<'_> {
-        match (&self.test, &self.context, &self.missing) {
-            (Some(test), _, _) => Evidence::Test(test),
-            (None, Some(why), _) => Evidence::Context(why),
-            (None, None, why) => Evidence::Missing(why.as_deref().unwrap_or_default()),
-        }
+    /// The statistic to compare with the prediction, or else the verdict without one and its reason.
+    pub(super) fn test(&self) -> std::result::Result<&Test, (Verdict, &str)> {
+        let missing = (Verdict::NotAnswered, self.missing.as_deref().unwrap_or_default());
+        let without = self.context.as_deref().map_or(missing, |why| (Verdict::Context, why));
+        self.test.as_ref().ok_or(without)
     }
 
     pub(super) fn expected_verdicts(&self) -> impl Iterator<Item = &str> {
@@ -126,11 +115,9 @@ impl Claim {
                 .allowed("a statistic, a context or a missing")
                 .into());
         }
-        if !self.expected_verdicts().all(|name| super::verdict::NAMES.contains(&name)) {
+        if !self.expected_verdicts().all(|name| NAMES.contains(&name)) {
             let problem = "is neither the name of a verdict nor names with ` or ` between them";
-            return Err(InputError::new("expected", &self.expected, problem)
-                .allowed(super::verdict::NAMES.join(", "))
-                .into());
+            return Err(InputError::new("expected", &self.expected, problem).allowed(NAMES.join(", ")).into());
         }
         let Some(name) = &self.statistic else {
             let unknown =

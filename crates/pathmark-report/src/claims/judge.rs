@@ -1,21 +1,17 @@
 //! The judgement of claims by the results in some folders.
 
 use super::condition::{Columns, Conditions};
-use super::definition::{Claim, Evidence as Kind, Report, Test};
+use super::definition::{Claim, Report, Test};
 use super::measure::{Evidence, Measurement};
 use super::statistic::{Cases, GuardColumn, GuardValue, Statistic};
 use super::verdict::Verdict;
-use crate::analysis::Interval;
 use crate::cases_file::{self, CaseRow};
-use crate::error::Result;
 use crate::guard_prices::{self, PriceRow, read_prices};
 use crate::lab::Lab;
-use crate::results::Results;
-use std::collections::{BTreeMap, BTreeSet};
+use crate::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The answer of the results to a claim.
 #[derive(Debug)]
 pub struct Answer<'a> {
     pub report: &'a Report,
@@ -55,10 +51,9 @@ pub fn judge<'a>(lab: &Arc<Lab>, reports: &'a [Report], folders: &[PathBuf]) -> 
     for (report, claim) in claims {
         let answer =
             |verdict, why: &str| Answer { report, claim, verdict, why: why.to_string(), source: None, found: None };
-        answers.push(match claim.evidence() {
-            Kind::Context(why) => answer(Verdict::Context, why),
-            Kind::Missing(why) => answer(Verdict::NotAnswered, why),
-            Kind::Test(test) => {
+        answers.push(match claim.test() {
+            Err((verdict, why)) => answer(verdict, why),
+            Ok(test) => {
                 let mut best = answer(Verdict::NotAnswered, "The results have no such rows.");
                 for library in &mut libraries {
                     let found = library.answer(report, claim, test)?;

@@ -1,13 +1,15 @@
-//! Lists of verdicts: files, and a section of the page.
+//! Lists of verdicts: files, which a run with fewer rows must not replace, and a section of the page.
 
-use super::definition::{Evidence, Report};
+use super::definition::Report;
 use super::judge::Answer;
 use super::verdict::{NAMES, Verdict};
 use crate::atomic_file;
 use crate::block::Block;
-use crate::error::{Error, Result};
+use crate::error::{Error, InputError, Result};
+use crate::files::Files;
 use crate::plot::number;
 use crate::table::Table;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs::File;
 use std::io::Read;
@@ -15,8 +17,7 @@ use std::path::{Component, Path, PathBuf};
 
 /// Name of the verdicts' folder within the results.
 pub const FOLDER: &str = "claims";
-/// The verdicts as a table.
-pub(super) const CSV: &str = "claims.csv";
+const CSV: &str = "claims.csv";
 /// The verdicts as a text. It is beside the folders of the rows, so that its links work.
 pub const MARKDOWN: &str = "CLAIMS.md";
 
@@ -36,7 +37,7 @@ impl Answer<'_> {
 
     /// The values that the report predicts.
     pub fn predicted(&self) -> String {
-        let Evidence::Test(test) = self.claim.evidence() else { return "-".to_string() };
+        let Ok(test) = self.claim.test() else { return "-".to_string() };
         let short = |value: f64| number::short(value, 3);
         match test.predicted {
             [low, high] if low == high => short(low),
@@ -48,15 +49,18 @@ impl Answer<'_> {
 
     /// The statistic in words.
     fn question(&self) -> String {
-        match self.claim.evidence() {
-            Evidence::Test(test) => test.statistic.to_string(),
-            _ => String::new(),
-        }
+        self.claim.test().map_or_else(|_| String::new(), |test| test.statistic.to_string())
     }
 
     fn level(&self) -> Option<f64> {
         Some(self.found?.interval?.level)
     }
+}
+
+/// Enters the files of the verdicts into the files of a command that will write them; a new file may replace an old one.
+pub fn enter(option: &str, out: &Path, files: &mut Files) -> Result<()> {
+    files.renews(option, &out.join(FOLDER).join(CSV), |path| starts_with(path, "claim,report,verdict,"))?;
+    files.renews(option, &out.join(MARKDOWN), is_markdown)
 }
 
 /// Writes `claims/claims.csv` and `CLAIMS.md` into a folder of results.
@@ -68,7 +72,49 @@ pub fn save(answers: &[Answer<'_>], out: &Path) -> Result<()> {
     atomic_file::write(&out.join(MARKDOWN), |file| file.write_all(text.as_bytes()))
 }
 
-/// The complete table of claims.
+/// Refuses to write verdicts into a folder whose files answer claims that these leave open to another run.
+pub fn check_no_loss(option: &str, answers: &[Answer<'_>], out: &Path) -> Result<()> {
+    for (path, read) in [(out.join(FOLDER).join(CSV), in_table as fn(&Path) -> Kept), (out.join(MARKDOWN), in_text)] {
+        let kept = read(&path);
+        let is_lost =
+            |answer: &&Answer<'_>| kept.get(&answer.claim.id).is_some_and(|kept| kept.says() > answer.verdict.says());
+        let lost: Vec<String> = answers.iter().filter(is_lost).map(|answer| answer.claim.id.to_string()).collect();
+        if !lost.is_empty() {
+            let problem = format!("answers claims that these rows do not answer: {}", lost.join(", "));
+            let error = InputError::new(option, path.display().to_string(), problem);
+            return Err(error.allowed("another folder, or more folders of rows").into());
+        }
+    }
+    Ok(())
+}
+
+/// The verdict on each claim.
+type Kept = BTreeMap<u32, Verdict>;
+
+/// The verdicts in a table; none if there is no such file.
+fn in_table(path: &Path) -> Kept {
+    let Ok(reader) = csv::Reader::from_path(path) else { return Kept::new() };
+    let rows = reader.into_records().filter_map(std::result::Result::ok);
+    rows.filter_map(|row| verdict(row.get(0)?, row.get(2)?)).collect()
+}
+
+/// The verdicts in a text; none if there is no such file.
+fn in_text(path: &Path) -> Kept {
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let entries = text.split("\n### ").skip(1);
+    let of_entry = |entry: &str| {
+        let (id, rest) = entry.split_once(". ")?;
+        let (_, rest) = rest.split_once("\n\n**")?;
+        verdict(id, &rest.split_once("**")?.0.to_lowercase().replace(' ', "-"))
+    };
+    entries.filter_map(of_entry).collect()
+}
+
+/// A claim's number with its verdict, if both can be read.
+fn verdict(id: &str, name: &str) -> Option<(u32, Verdict)> {
+    Some((id.parse().ok()?, Verdict::named(name)?))
+}
+
 fn table(stem: &'static str, answers: &[Answer<'_>]) -> Block {
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let of = |answer: &Answer<'_>| answer.found;
@@ -91,11 +137,6 @@ fn table(stem: &'static str, answers: &[Answer<'_>]) -> Block {
         .column("source", |a| a.source.as_ref().map_or_else(String::new, |source| source.display().to_string()))
         .column("why", |a| a.why.clone())
         .end()
-}
-
-/// Whether a file is such a table, which a new one may replace.
-pub(super) fn is_csv(path: &Path) -> bool {
-    starts_with(path, "claim,report,verdict,")
 }
 
 /// Whether a file is such a text, which a new one may replace.
@@ -154,7 +195,6 @@ fn markdown(answers: &[Answer<'_>], base: &Path) -> String {
     text
 }
 
-/// One claim.
 fn entry(answer: &Answer<'_>, base: &Path) -> String {
     let claim = answer.claim;
     let mut text = format!("\n### {}. {}\n\n**{}**", claim.id, claim.claim, capital(answer.verdict));
@@ -189,14 +229,15 @@ fn capital(verdict: Verdict) -> String {
 
 /// The number of claims with each verdict, in a sentence.
 pub(super) fn in_short(answers: &[Answer<'_>]) -> String {
+    let (all, totals) = (answers.len(), totals(answers));
+    format!("Verdicts on {all} claims of the four reports, computed from these rows: {totals}.")
+}
+
+/// The number of claims with each verdict, without those that none has: `2 confirmed, 1 open`.
+pub fn totals(answers: &[Answer<'_>]) -> String {
     let count = |name: &str| answers.iter().filter(|answer| answer.verdict.name() == name).count();
     let counts = NAMES.iter().map(|name| (count(name), name.replace('-', " "))).filter(|(count, _)| *count > 0);
-    let counts: Vec<String> = counts.map(|(count, name)| format!("{count} {name}")).collect();
-    format!(
-        "Verdicts on {} claims of the four reports, computed from these rows: {}.",
-        answers.len(),
-        counts.join(", ")
-    )
+    counts.map(|(count, name)| format!("{count} {name}")).collect::<Vec<String>>().join(", ")
 }
 
 /// The verdicts for the page: counts, and a table for each report.

@@ -2,25 +2,21 @@
 
 use super::condition::{Columns, Conditions, columns, number, text};
 use super::statistic::{ForecastColumn, Kind};
-use crate::analysis::confidence_sequence::Stopping;
 use crate::analysis::fit::log_log;
 use crate::analysis::jackknife::SeedCurves;
 use crate::analysis::mean::{Moments, geometric_interval, t_interval};
-use crate::analysis::quantile::median;
 use crate::analysis::rank::spearman;
 use crate::analysis::slope::power_law;
 use crate::analysis::speedup::serial_fraction;
 use crate::analysis::z_test::{critical_value, z_score};
-use crate::analysis::{Estimate, Interval};
 use crate::contenders::{curves_of_seeds, one_per_seed};
-use crate::error::{InputError, Result};
+use crate::error::InputError;
 use crate::experiment::read_calibration;
 use crate::measure::{image_columns, schedule_columns};
 use crate::paired::ratios_by;
-use crate::results::Results;
-use crate::rows::Row;
+use crate::prelude::*;
 use crate::simulate::{Contender, Hardware, contenders, forecast};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::HashMap;
 
 /// A value, its interval if there were enough values for one, and the number of values that the interval is computed from.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,7 +6,6 @@
 mod condition;
 mod definition;
 mod judge;
-mod kept;
 mod listing;
 mod measure;
 mod statistic;
@@ -16,15 +15,12 @@ mod verdict;
 
 pub use definition::{Claim, Report};
 pub use judge::{Answer, judge};
-pub use kept::check_no_loss;
-pub use listing::{FOLDER, MARKDOWN, is_markdown, save};
+pub use listing::{FOLDER, MARKDOWN, check_no_loss, enter, is_markdown, save, totals};
 pub use verdict::Verdict;
 
 use super::page::Section;
 use crate::error::Result;
-use crate::files::Files;
 use crate::lab::Lab;
-use listing::{CSV, is_csv};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -33,12 +29,6 @@ const QUESTION: &str = "What did the four reports claim, and what do the rows of
 const ANALYSIS: &str = "Each claim names the rows that answer it, a statistic, and the values that the report predicts for that statistic. A claim is confirmed if the whole interval of \
 the measurement lies within the prediction, refuted if it lies wholly outside, and open otherwise. It is not comparable if the rows were measured under other conditions than the report's, \
 and not answered if there are no rows.";
-
-/// Enters the files of the verdicts into the files of a command that will write them.
-pub fn enter(option: &str, out: &Path, files: &mut Files) -> Result<()> {
-    files.renews(option, &out.join(FOLDER).join(CSV), is_csv)?;
-    files.renews(option, &out.join(MARKDOWN), is_markdown)
-}
 
 /// The verdicts as the first section of the page, if the folder has rows for any of them.
 pub(super) fn section(lab: &Arc<Lab>, out: &Path) -> Result<Option<Section>> {

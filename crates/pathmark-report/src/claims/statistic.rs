@@ -54,14 +54,12 @@ pub(super) enum ForecastColumn {
     SerialFraction,
 }
 
-/// Hard cases by their names.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Cases {
     pub(super) ids: Vec<String>,
 }
 
-/// A column of a guard's row.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct GuardValue {

@@ -1,5 +1,5 @@
 use super::condition::{Columns, columns};
-use super::definition::{Evidence, Test};
+use super::definition::Test;
 use super::measure::Measurement;
 use super::statistic::{Kind, Statistic};
 use super::*;
@@ -302,9 +302,7 @@ fn each_query_asks_for_rows_of_an_experiment() {
     let reports = Report::all().unwrap();
     let (mut rows, mut unmet): (BTreeMap<String, Vec<Columns>>, Vec<String>) = (BTreeMap::new(), Vec::new());
     for claim in reports.iter().flat_map(|report| &report.claims) {
-        let Evidence::Test(Test { statistic: Statistic::OfRows { experiment, rows: wanted, kind }, .. }) =
-            claim.evidence()
-        else {
+        let Ok(Test { statistic: Statistic::OfRows { experiment, rows: wanted, kind }, .. }) = claim.test() else {
             continue;
         };
         // An experiment has no cells if the program lacks the feature that it needs.

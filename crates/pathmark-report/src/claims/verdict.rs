@@ -3,10 +3,8 @@
 use super::measure::Measurement;
 use std::fmt;
 
-/// The names of all verdicts.
 pub(super) const NAMES: [&str; 6] = ["confirmed", "refuted", "open", "not-comparable", "not-answered", "context"];
 
-/// The result of the measurements for a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// The whole interval lies within the prediction.
@@ -28,7 +26,6 @@ impl Verdict {
         NAMES[self as usize]
     }
 
-    /// The verdict of that name.
     pub(super) fn named(name: &str) -> Option<Self> {
         let all = [Self::Confirmed, Self::Refuted, Self::Open, Self::NotComparable, Self::NotAnswered, Self::Context];
         all.into_iter().find(|verdict| verdict.name() == name)

@@ -1,6 +1,6 @@
 //! The gain of a hierarchy: time per ray against the number of primitives, and the gain against samples per pixel.
 
-use super::prelude::*;
+use crate::prelude::*;
 use crate::scene::ACCELERATORS;
 
 /// Rows by a number (of primitives or samples), then by accelerator.
@@ -75,7 +75,7 @@ fn against_primitives(results: &Results, sizes: &Places<'_>, accelerators: &[(us
     });
     let (x, y) = (Axis::log("spheres"), Axis::log("nanoseconds per ray"));
     let mut chart = LineChart::new("Time per ray against the number of spheres", x, y, series.collect());
-    chart.subtitle = format!("balls filling the same share of a cube, {}", results.machine_line());
+    chart.subtitle = format!("balls filling the same share of a cube, {}", results.run.machine.line());
     let bars = bars(times.iter().map(|(_, time)| *time));
     chart.caption = format!("Median of repetitions of {}, shading and all. {bars}", first.estimator);
     Some(Block::figure("acceleration", chart))
@@ -138,7 +138,7 @@ fn against_spp(results: &Results, samples: &Places<'_>, gains: &[(usize, &str, G
     );
     let first = samples.values().flat_map(BTreeMap::values).flatten().next();
     let image = first.map_or_else(String::new, |row| format!("{}, {}x{}, ", row.scene, row.width, row.height));
-    chart.subtitle = format!("{image}{}", results.machine_line());
+    chart.subtitle = format!("{image}{}", results.run.machine.line());
     chart.caption = ratio_bars(gains.iter().flat_map(|(.., gains)| gains).map(|(_, gain)| *gain));
     chart.dodge = 4.0;
     let finding = |(_, name, gains): &(usize, &str, Gains)| {

@@ -1,7 +1,7 @@
 //! Speedups of one schedule against several baselines of the same image, and those that exceed the number of workers.
 
-use super::prelude::*;
 use crate::analysis::speedup::{Oddity, oddity, serial_fraction_within};
+use crate::prelude::*;
 
 /// A schedule and the compiled-in effects, which distinguish the builds and schedules of an experiment.
 type Kind<'a> = (&'a Schedule, &'a str);
@@ -45,17 +45,11 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let dots = all.iter().map(|a| DotRow::new(a.name(), vec![Some(Estimated::from(a.speedup).dot())])).collect();
     let mut plot =
         DotPlot::new("One schedule against several baselines", Axis::linear("speedup").including([1.0, 2.1]), dots);
-    plot.guides = all.iter().map(Against::workers).collect::<BTreeSet<_>>().into_iter().map(guide).collect();
+    let workers = all.iter().map(Against::workers).collect::<BTreeSet<_>>().into_iter();
+    plot.guides = workers.map(|workers| (workers as f64, format!("{workers} workers"))).collect();
     plot.subtitle = results.workload();
     plot.caption = ratio_bars(all.iter().map(|against| against.speedup));
-    let mut blocks = vec![Block::figure("baselines", plot)];
-    blocks.extend(finding(&all));
-    blocks.push(table(&all));
-    Ok(blocks)
-}
-
-fn guide(workers: usize) -> (f64, String) {
-    (workers as f64, format!("{workers} workers"))
+    Ok([Block::figure("baselines", plot)].into_iter().chain(finding(&all)).chain([table(&all)]).collect())
 }
 
 fn finding(all: &[Against<'_>]) -> Option<Block> {

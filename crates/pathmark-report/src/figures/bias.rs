@@ -1,7 +1,7 @@
 //! Cost and gain of an approximation: light lost, noise and doubtful pixels by the value of one axis, against rows in
 //! which the axis has its usual value.
 
-use super::prelude::*;
+use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]
@@ -11,7 +11,7 @@ pub(super) struct Options {
     usual: Option<String>,
 }
 
-#[derive(Deserialize, Clone, Copy, PartialEq, Eq)]
+#[derive(Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Varied {
     Epsilon,
@@ -19,29 +19,16 @@ enum Varied {
     Clamp,
 }
 
+/// The value of an axis in an image.
+type Value = fn(&ImageKey) -> &str;
+
 impl Varied {
-    fn of(self, image: &ImageKey) -> &str {
+    /// Its name, its value in an image, and a function that clears it there.
+    fn parts(self) -> (&'static str, Value, fn(&mut ImageKey)) {
         match self {
-            Self::Epsilon => &image.epsilon,
-            Self::Filter => &image.filter,
-            Self::Clamp => &image.clamp,
-        }
-    }
-
-    /// Clears it in an image.
-    fn forget(self) -> fn(&mut ImageKey) {
-        match self {
-            Self::Epsilon => |image| image.epsilon.clear(),
-            Self::Filter => |image| image.filter.clear(),
-            Self::Clamp => |image| image.clamp.clear(),
-        }
-    }
-
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Epsilon => "epsilon",
-            Self::Filter => "filter",
-            Self::Clamp => "clamp",
+            Self::Epsilon => ("epsilon", |image| &image.epsilon, |image| image.epsilon.clear()),
+            Self::Filter => ("filter", |image| &image.filter, |image| image.filter.clear()),
+            Self::Clamp => ("clamp", |image| &image.clamp, |image| image.clamp.clear()),
         }
     }
 }
@@ -60,11 +47,12 @@ struct Cost {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { axis, usual } = options(results, "bias")?;
-    let (axis, usual) = (axis.unwrap_or(Varied::Epsilon), usual.unwrap_or_else(|| "none".to_string()));
-    let mut costs = costs(results, axis, &usual);
+    let Options { axis, usual } = options(&results.definition, "bias")?;
+    let (name, of, forget) = axis.unwrap_or(Varied::Epsilon).parts();
+    let usual = usual.unwrap_or_else(|| "none".to_string());
+    let mut costs = costs(results, of, forget, &usual);
     if costs.is_empty() {
-        let text = format!("There is nothing to compare: it takes rows with and without {}.", axis.name());
+        let text = format!("There is nothing to compare: it takes rows with and without {name}.");
         return Ok(vec![Block::notice(text)]);
     }
     let values = in_order(costs.iter().map(|cost| cost.value.clone()), &usual);
@@ -87,7 +75,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         DotRow::new(value, scenes.iter().map(dot).collect())
     };
     let mut plot = DotPlot::new(
-        format!("Light by {}", axis.name()),
+        format!("Light by {name}"),
         Axis::linear(format!("mean radiance against {usual}, %")).including([100.0]),
         values.iter().map(row).collect(),
     )
@@ -104,9 +92,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     });
     let finding = worst.map(|cost| {
         Block::finding(format!(
-            "At {} samples per pixel the light changes most with {} {} on {}: to {:.2} % of what it is with {usual}{}.",
+            "At {} samples per pixel the light changes most with {name} {} on {}: to {:.2} % of what it is with {usual}{}.",
             cost.spp,
-            axis.name(),
             cost.value,
             cost.scene,
             100.0 * cost.light.value,
@@ -118,9 +105,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         ))
     });
     let percent = |share: Option<f64>| share.map(|share| 100.0 * share);
-    let table = Block::table("bias", format!("Light, noise and doubtful pixels by {}", axis.name()), &costs)
+    let table = Block::table("bias", format!("Light, noise and doubtful pixels by {name}"), &costs)
         .column("scene", |cost| cost.scene.clone())
-        .column(axis.name(), |cost| cost.value.clone())
+        .column(name, |cost| cost.value.clone())
         .column("spp", |cost| cost.spp.to_string())
         .estimated("light, %", Decimals(3), |cost| cost.light.times(100.0))
         .number("RMSE", Decimals(5), |cost| cost.rmse)
@@ -128,10 +115,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .number("black pixels, %", Decimals(3), |cost| percent(cost.black))
         .number("fireflies in a million pixels", Decimals(0), |cost| cost.fireflies.map(|share| 1e6 * share))
         .end();
-    let mut blocks = vec![Block::figure("bias", plot)];
-    blocks.extend(finding);
-    blocks.push(table);
-    Ok(blocks)
+    Ok([Block::figure("bias", plot)].into_iter().chain(finding).chain([table]).collect())
 }
 
 /// The values in order: the usual one, then by their numbers; a value without a number counts as 0.
@@ -145,16 +129,16 @@ fn in_order(values: impl Iterator<Item = String>, usual: &str) -> Vec<String> {
     values
 }
 
-fn costs(results: &Results, axis: Varied, usual: &str) -> Vec<Cost> {
+fn costs(results: &Results, of: Value, forget: fn(&mut ImageKey), usual: &str) -> Vec<Cost> {
     // Images are compared whatever the kernel: an approximation may exist for one kernel only, and kernels give the
     // same image.
-    let plain = results.rows().filter(|row| axis.of(&row.image).is_empty());
-    let plain = Repeats::of_images(plain, axis.forget(), |row| row.mean_radiance);
-    let cells = results.by(|row| (row.scene.as_str(), axis.of(&row.image), row.spp));
+    let plain = results.rows().filter(|row| of(&row.image).is_empty());
+    let plain = Repeats::of_images(plain, forget, |row| row.mean_radiance);
+    let cells = results.by(|row| (row.scene.as_str(), of(&row.image), row.spp));
     let cost = |((scene, value, spp), rows): ((&str, &str, u32), Vec<&Row>)| {
         let rows = rows.into_iter().map(|row| (&row.image, row)).collect::<BTreeMap<_, _>>().into_values();
         let rows: Vec<&Row> = rows.collect();
-        let light = Repeats::of_images(rows.iter().copied(), axis.forget(), |row| row.mean_radiance).over(&plain);
+        let light = Repeats::of_images(rows.iter().copied(), forget, |row| row.mean_radiance).over(&plain);
         let mean = |value: fn(&Row) -> Option<f64>| {
             let all = values(&rows, value);
             (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)

@@ -1,7 +1,7 @@
 //! Light by the number of its bounces, and the lengths of paths. Rows with growing bounce limits are the partial sums
 //! of the Neumann series, because a truncated path has the same vertices up to the limit.
 
-use super::prelude::*;
+use crate::prelude::*;
 
 /// One bounce limit of a scene.
 struct Step {
@@ -66,10 +66,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .number("share up to here, %", Decimals(3), |step| 100.0 * step.up_to)
         .number("paths that are longer, %", Decimals(3), |step| 100.0 * step.cut)
         .end();
-    let mut blocks = vec![Block::figure("bounces", light), Block::figure("path-lengths", paths)];
-    blocks.extend(findings);
-    blocks.push(table);
-    Ok(blocks)
+    let figures = [Block::figure("bounces", light), Block::figure("path-lengths", paths)];
+    Ok(figures.into_iter().chain(findings).chain([table]).collect())
 }
 
 /// The steps of the rows with a limit, relative to the rows of the same image without one.

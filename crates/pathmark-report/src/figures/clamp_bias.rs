@@ -1,7 +1,7 @@
 //! The cost of clamping each subpixel before averaging: it loses light, but less with more samples.
 
-use super::prelude::*;
 use crate::analysis::mean::Moments;
+use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]
@@ -30,7 +30,7 @@ fn radiance(rows: &[&Row]) -> Option<f64> {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { prototype } = options(results, "clamp-bias")?;
+    let Options { prototype } = options(&results.definition, "clamp-bias")?;
     let lit = results.rows().filter(|row| row.mean_radiance.is_some());
     // One scene in one size: other images have other light.
     let images = group(lit, |row| (&row.scene, &row.scene_hash, row.width, row.height));

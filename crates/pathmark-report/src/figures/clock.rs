@@ -1,7 +1,7 @@
 //! The speedups that `clock()` would show: it adds up the CPU time of all threads, so it never shows a gain by
 //! parallelism.
 
-use super::prelude::*;
+use crate::prelude::*;
 
 /// The rows of a schedule on one image, and its speedups over the serial run of that image.
 struct Line<'a> {
@@ -28,7 +28,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     if lines.is_empty() {
         return Ok(Vec::new());
     }
-    let processors = results.processors();
+    let processors = results.run.machine.processors;
     let parallel = lines.iter().filter(|line| line.schedule.key.threads == processors && !line.schedule.is_serial());
     let whole = parallel.filter_map(|line| line.by_clock.filter(|told| !told.is_partial));
     let claimed = median(&whole.map(|told| told.value).collect::<Vec<f64>>());

@@ -1,13 +1,12 @@
 //! Renders at growing spp beside their reference, with maps of their error and of its visibility.
 
-use super::prelude::*;
 use crate::image_io::Image;
 use crate::metric::{Heatmap, flip_map, heatmap};
 use crate::plot::ColourBar;
-use crate::reference_image::reference_image;
+use crate::prelude::*;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Some(reference) = reference_image(results, None)? else {
+    let Some(reference) = results.reference_image(None)? else {
         let text =
             "There is no contact sheet: the films of the references are not in the folder beside this experiment.";
         return Ok(vec![Block::notice(text)]);

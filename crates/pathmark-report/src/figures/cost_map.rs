@@ -1,7 +1,7 @@
 //! The cost of each tile, over the image: the unequal pieces that schedules have to distribute.
 
-use super::prelude::*;
-use crate::plot::heat_map::{HeatMap, HeatPanel, Tile};
+use crate::plot::{HeatMap, Tile};
+use crate::prelude::*;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let serial = results.by(|row| &row.schedule).into_iter().filter(|(schedule, _)| schedule.is_serial());
@@ -9,7 +9,6 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let typical = serial.rev().filter_map(|(_, rows)| Results::typical(&rows).map(|row| (rows.len(), row)));
     let Some((_, record)) = typical.max_by_key(|(runs, _)| *runs) else { return Ok(Vec::new()) };
     let Some(trace) = results.trace(record)? else { return Ok(Vec::new()) };
-    let (width, height) = (record.width, record.height);
     let tile = |row: &crate::measure::TraceRow| Tile {
         x0: row.x0,
         y0: row.y0,
@@ -20,15 +19,16 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let tiles: Vec<Tile> = trace.rows.iter().map(tile).collect();
     let costs = tiles.iter().map(|tile| tile.value);
     let (least, most) = (costs.clone().fold(f64::INFINITY, f64::min), costs.fold(0.0, f64::max));
-    let title = joined([results.series_name(record), format!("{}, {} spp", record.decomposition, record.spp)]);
-    let panel = HeatPanel { title, width, height, tiles };
+    let name = joined([results.series_name(record), format!("{}, {} spp", record.decomposition, record.spp)]);
     let map = HeatMap {
         title: "What a tile costs".to_string(),
         subtitle: results.workload(),
         caption: "One serial run, the one with the median time.".to_string(),
         label: "milliseconds per tile".to_string(),
-        scale: None,
-        panels: vec![panel],
+        name,
+        width: record.width,
+        height: record.height,
+        tiles,
     };
     let finding = format!(
         "The dearest tile takes {most:.2} ms, {:.1} times as long as the cheapest ({least:.2} ms).",

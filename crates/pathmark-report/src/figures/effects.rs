@@ -1,7 +1,7 @@
 //! The price of an effect: absent, compiled in but unused, used; and the gain of each scene from the profile that fits
 //! it.
 
-use super::prelude::*;
+use crate::prelude::*;
 use crate::scene::PROFILES;
 
 #[derive(Deserialize, Default)]
@@ -71,7 +71,7 @@ impl Times {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { largest, price } = options(results, "effects")?;
+    let Options { largest, price } = options(&results.definition, "effects")?;
     let times: BTreeMap<Kind, Times> =
         results.by(Kind::of).into_iter().map(|(kind, r)| (kind, Times::of(&r))).collect();
     let mut blocks = prices(results, &price, &times);

@@ -1,12 +1,8 @@
 //! Images of each estimator and sampler after about the same time.
 
-use super::prelude::*;
 use crate::experiment::EXTERNAL;
 use crate::image_io::Image;
-use crate::reference_image::reference_image;
-
-/// The most images in a row that fit on the page.
-const COLUMNS: usize = 4;
+use crate::prelude::*;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Some(scene) = results.first().map(|row| row.scene.clone()) else { return Ok(Vec::new()) };
@@ -31,17 +27,13 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         };
         let error = record.rmse.map_or_else(String::new, |rmse| format!("RMSE {rmse:.4}, "));
         let caption = vec![name.clone(), format!("{error}{} spp, {:.2} s", record.spp, seconds(record))];
-        cells.push(Some(Cell::of(image, caption)?));
+        cells.push(Cell::of(image, caption)?);
     }
-    if let Some(reference) = reference_image(results, Some(&scene))? {
-        cells.push(Some(Cell::of(&reference, vec!["reference".to_string(), "mean of two halves".to_string()])?));
+    if let Some(reference) = results.reference_image(Some(&scene))? {
+        cells.push(Cell::of(&reference, vec!["reference".to_string(), "mean of two halves".to_string()])?);
     }
-    let sheet = ContactSheet {
-        title: format!("{scene} after about {time:.2} s"),
-        subtitle: "Of each curve the point that is nearest in time; neighbouring points differ by a factor of two. Values above 1 are white.".to_string(),
-        rows: cells.chunks(COLUMNS).map(<[Option<Cell>]>::to_vec).collect(),
-        bars: Vec::new(),
-        comparison: Comparison::Wipe,
-    };
+    let title = format!("{scene} after about {time:.2} s");
+    let subtitle = "Of each curve the point that is nearest in time; neighbouring points differ by a factor of two. Values above 1 are white.";
+    let sheet = ContactSheet::grid(title, subtitle.to_string(), cells, Comparison::Wipe);
     Ok(vec![Block::sheet("equal-time", &sheet)?])
 }

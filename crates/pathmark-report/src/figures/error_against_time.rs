@@ -1,8 +1,8 @@
 //! The cost of accuracy by estimator and sampler: error against seconds, a line for each, with a band for its interval
 //! over seeds.
 
-use super::prelude::*;
 use crate::contenders::{Contender, CostPoint, contenders};
+use crate::prelude::*;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let scenes = contenders(results)?;
@@ -10,13 +10,17 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let text = "There is no error against time: it takes errors against references from two seeds or more.";
         return Ok(vec![Block::notice(text)]);
     };
+    let point = |point: &CostPoint| Estimated::of(point.rmse, point.interval).above(point.seconds);
+    let series = |(index, contender): (usize, &Contender)| {
+        Series::new(&contender.name, Look::nth(index), contender.points.iter().map(point).collect()).banded()
+    };
     let mut chart = LineChart::new(
         "What accuracy costs in time, by estimator and sampler",
         Axis::log("seconds of rendering"),
         Axis::log("RMSE, linear radiance"),
-        first.iter().enumerate().map(|(index, contender)| series(index, contender)).collect(),
+        first.iter().enumerate().map(series).collect(),
     );
-    chart.subtitle = format!("{scene}, {}, {}", results.size(), results.machine_line());
+    chart.subtitle = format!("{scene}, {}, {}", results.size(), results.run.machine.line());
     chart.caption =
         "Bands: 95 % interval over seeds. Along a line the samples per pixel double from point to point.".to_string();
     let start = first.first().and_then(|contender| contender.points.first()).map(|point| (point.seconds, point.rmse));
@@ -33,9 +37,4 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .number("variation over seeds", Decimals(3), |(_, point)| point.variation)
         .end();
     Ok(vec![Block::figure("error-against-time", chart), table])
-}
-
-fn series(index: usize, contender: &Contender) -> Series {
-    let point = |point: &CostPoint| Estimated::of(point.rmse, point.interval).above(point.seconds);
-    Series::new(&contender.name, Look::nth(index), contender.points.iter().map(point).collect()).banded()
 }

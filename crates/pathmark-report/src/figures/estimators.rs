@@ -1,8 +1,8 @@
 //! The best estimator for each scene: seconds to the same error, relative to the estimator that is named first.
 
-use super::prelude::*;
-use crate::analysis::versus::equal_error;
+use crate::analysis::price::equal_error;
 use crate::contenders::{Contender, contenders};
+use crate::prelude::*;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let scenes = contenders(results)?;
@@ -42,7 +42,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     );
     let mut plot = plot.grouped(others);
     plot.guides = vec![(1.0, format!("as fast as {first}"))];
-    plot.subtitle = results.machine_line();
+    plot.subtitle = results.run.machine.line();
     plot.caption = "Bars: 95 % interval over seeds, of error and time together.".to_string();
     Ok(vec![
         Block::figure("estimators", plot),

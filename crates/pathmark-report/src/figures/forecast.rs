@@ -1,31 +1,27 @@
 //! Simulated schedules of the jobs measured here on other machines, and the errors of the predictions for this machine.
 
-use super::prelude::*;
 use crate::experiment::read_calibration;
 use crate::forecasts::{forecast_blocks, prediction_blocks, predictions};
 use crate::measure::THREAD_PER_ROW;
+use crate::prelude::*;
 use crate::simulate::{Contender, Forecast, Hardware, contenders, forecast};
 use std::num::NonZeroUsize;
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Options {
     /// Cores of the simulated machines.
-    cores: Vec<NonZeroUsize>,
+    cores: Option<Vec<NonZeroUsize>>,
     /// The pieces whose serial run gives the jobs.
-    decomposition: String,
+    decomposition: Option<String>,
 }
 
-impl Default for Options {
-    fn default() -> Self {
-        let cores = [1, 2, 4, 8, 16, 32, 64, 128, 256, 384, 512, 768];
-        let cores = cores.into_iter().filter_map(NonZeroUsize::new).collect();
-        Self { cores, decomposition: "rows".to_string() }
-    }
-}
+const CORES: [usize; 12] = [1, 2, 4, 8, 16, 32, 64, 128, 256, 384, 512, 768];
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { cores, decomposition } = options(results, "forecast")?;
+    let Options { cores, decomposition } = options(&results.definition, "forecast")?;
+    let cores = cores.map_or(CORES.to_vec(), |cores| cores.into_iter().map(NonZeroUsize::get).collect());
+    let decomposition = decomposition.unwrap_or_else(|| "rows".to_string());
     let path = results.folder.join("calibration.csv");
     if !path.is_file() {
         return Ok(vec![Block::notice("There is no calibration.csv, so nothing can be simulated.")]);
@@ -38,7 +34,6 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     {
         let costs = trace.costs_s();
         contenders.push(Contender::longest_first());
-        let cores: Vec<usize> = cores.into_iter().map(NonZeroUsize::get).collect();
         let rows = forecast(&costs, &contenders, &cores, &Hardware::default());
         let of = format!("{}x{}, {} spp, {} {decomposition}", row.width, row.height, row.spp, costs.len());
         if decomposition == "rows" {

@@ -1,11 +1,8 @@
 //! The gallery: an image of every scene, with the effects that the scene needs.
 
-use super::prelude::*;
 use crate::image_io::Image;
+use crate::prelude::*;
 use crate::scene::{effect_names, load};
-
-/// The most images in a row that fit on the page.
-const COLUMNS: usize = 4;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     // If a scene was rendered more than once, take the image with the most samples.
@@ -18,18 +15,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     if scenes.is_empty() {
         return Ok(vec![Block::notice("There is no gallery: this experiment kept no images.")]);
     }
-    let mut cells = Vec::new();
-    for (record, image) in scenes.values() {
-        cells.push(Some(cell(record, image)?));
-    }
-    let sheet = ContactSheet {
-        title: format!("{} scenes", cells.len()),
-        subtitle: "Below each name: what the scene calls for, and the profile that its kernel is compiled for. Values above 1 are white."
-            .to_string(),
-        rows: cells.chunks(COLUMNS).map(<[Option<Cell>]>::to_vec).collect(),
-        bars: Vec::new(),
-        comparison: Comparison::Single,
-    };
+    let cells = scenes.values().map(|(record, image)| cell(record, image)).collect::<Result<Vec<Cell>>>()?;
+    let title = format!("{} scenes", cells.len());
+    let subtitle = "Below each name: what the scene calls for, and the profile that its kernel is compiled for. Values above 1 are white.";
+    let sheet = ContactSheet::grid(title, subtitle.to_string(), cells, Comparison::Single);
     Ok(vec![Block::sheet("gallery", &sheet)?])
 }
 

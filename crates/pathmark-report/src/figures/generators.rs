@@ -1,6 +1,6 @@
 //! Random number generators: one shared by all threads, one for each thread, or no shared state.
 
-use super::prelude::*;
+use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]
@@ -41,9 +41,9 @@ struct Line<'a> {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { compare } = options(results, "generators")?;
+    let Options { compare } = options(&results.definition, "generators")?;
     let crews: BTreeSet<(usize, String)> =
-        results.by_schedule().into_keys().map(|schedule| (schedule.key.threads, crew(schedule))).collect();
+        results.by(|row| &row.schedule).into_keys().map(|schedule| (schedule.key.threads, crew(schedule))).collect();
     // Times of different images must not be mixed.
     let by_sampler = results.by(|row| (row.sampler.as_str(), row.spp, (row.width, row.height)));
     let (several_spp, several_sizes) = (

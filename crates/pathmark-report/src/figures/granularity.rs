@@ -1,10 +1,9 @@
 //! Efficiency against the size of a job, the size at which half is lost (METG), and the overhead of a job.
 
-use super::prelude::*;
 use crate::analysis::metg::{Grain, HALF, Metg, metg};
+use crate::prelude::*;
 use crate::serial::Serial;
 
-/// The options of this figure.
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Options {
@@ -27,7 +26,7 @@ impl<'a> Baseline<'a> {
             Some((key, row.busy_sum_s? / row.jobs as f64))
         });
         let per_job = gathered(jobs).into_iter().filter_map(|(key, times)| Some((key, median(&times)?))).collect();
-        Ok(Self { serial: results.serial()?, per_job, processors: results.processors() })
+        Ok(Self { serial: results.serial()?, per_job, processors: results.run.machine.processors })
     }
 
     /// The workers that can run at the same time.
@@ -37,14 +36,14 @@ impl<'a> Baseline<'a> {
 
     /// The time of the fastest serial run over the makespan times the number of workers in use.
     fn efficiency(&self, rows: &[&'a Row]) -> Repeats {
-        let pairs = self.serial.with_fastest(rows.iter().copied());
+        let pairs = self.serial.fastest.pairs(rows.iter().copied());
         let spent = Repeats::of_rows(rows.iter().copied(), |row| Some(self.in_use(row)));
         pairs.gains(|row| row.makespan_s).over(&spent)
     }
 
     /// Processor time per job beyond the serial work on the same pieces, in nanoseconds.
     fn extra_ns(&self, rows: Vec<&'a Row>) -> Repeats {
-        self.serial.on_pieces(rows).values(|row, serial| {
+        self.serial.on_pieces.pairs(rows).values(|row, serial| {
             let extra_s = self.in_use(row) * row.makespan_s? - serial.busy_sum_s?;
             Some(extra_s / row.jobs as f64 * 1e9)
         })
@@ -88,7 +87,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("how sure", |(_, [_, remark])| remark.clone())
         .end();
     let mut blocks = vec![Block::figure("granularity", chart), table, overhead(results, &baseline)];
-    let Options { compare } = options(results, "granularity")?;
+    let Options { compare } = options(&results.definition, "granularity")?;
     if let Some([first, second]) = compare {
         blocks.extend(compared(results, &first, &second)?);
     }
@@ -153,7 +152,7 @@ fn in_words(found: &Metg) -> [String; 2] {
         }
         Metg::Below(least) => [format!("< {}", microseconds(*least)), "even the smallest jobs keep half".to_string()],
         Metg::Above(most) => [format!("> {}", microseconds(*most)), "even the largest jobs do not".to_string()],
-        Metg::Undefined(reason) => ["-".to_string(), reason.to_string()],
+        Metg::Undefined(reason) => ["-".to_string(), (*reason).to_string()],
     }
 }
 

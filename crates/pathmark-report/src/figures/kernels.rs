@@ -1,9 +1,9 @@
 //! The gain of SIMD lanes: samples per second over those of the scalar kernel, by scene, instruction set and precision.
 
-use super::prelude::*;
-use crate::analysis::versus::equal_error;
+use crate::analysis::price::equal_error;
 use crate::contenders::{Contender, contenders};
 use crate::kernel::DEVICE_NAME;
+use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
@@ -55,7 +55,7 @@ fn works<'a>(results: &'a Results, yardstick: &str) -> Result<Vec<Vec<Line<'a>>>
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { yardstick, goal } = options(results, "kernels")?;
+    let Options { yardstick, goal } = options(&results.definition, "kernels")?;
     let (yardstick, goal) = (yardstick.unwrap_or_else(|| "scalar".to_string()), goal.map_or(0.01, |goal| goal.0));
     let works = works(results, &yardstick)?;
     if works.is_empty() {
@@ -125,7 +125,7 @@ fn plot(results: &Results, works: &[Vec<Line<'_>>], yardstick: &str) -> DotPlot 
     let title = if has_devices { "What SIMD lanes and devices are worth" } else { "What SIMD lanes are worth" };
     let mut plot = DotPlot::new(title, axis, rows.collect()).grouped(kernels());
     plot.guides = vec![(1.0, format!("the {yardstick} kernel"))];
-    plot.subtitle = format!("one thread, {}", results.machine_line());
+    plot.subtitle = format!("one thread, {}", results.run.machine.line());
     let shown = alone().flatten().filter(|line| line.kernel != yardstick);
     let bars = bars(shown.filter_map(|line| line.ratio));
     plot.caption = format!("Median of ratios of renders of the same image. {bars}");

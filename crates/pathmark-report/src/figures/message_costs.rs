@@ -1,8 +1,8 @@
 //! Costs of messages between two processes here, and the time for which a fetch-and-op waits for rank 0.
 
-use super::prelude::*;
 use crate::cluster::{MessageCost, MessageCosts};
 use crate::experiment::MESSAGES;
+use crate::prelude::*;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let path = results.folder.join(MESSAGES);

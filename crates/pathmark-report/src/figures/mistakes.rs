@@ -1,7 +1,7 @@
 //! Errors that are made on purpose, each beside the right way: the time that they cost, and the error of the image's mean.
 
-use super::prelude::*;
 use crate::analysis::error_ratio::error_ratio;
+use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]

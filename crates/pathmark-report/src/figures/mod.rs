@@ -21,15 +21,15 @@ mod gallery;
 mod generators;
 mod granularity;
 mod kernels;
+mod losses;
 mod message_costs;
 mod mistakes;
 mod openmp;
-mod options;
+pub(crate) mod options;
 mod outputs;
 mod oversubscription;
 mod pairs;
 mod precision;
-mod prelude;
 mod price_list;
 mod ranks_forecast;
 mod rmse_against_spp;
@@ -116,6 +116,7 @@ pub const FIGURES: &[FigureEntry] = entries! {
     kernels, "kernels", kernels::Options, "samples per second of lanes over those of the scalar kernel, by instruction set and precision";
     precision, "precision", NoOptions, "time, error, light, escapes and invalid samples of single precision beside double";
     acceleration, "acceleration", Yardstick, "time per ray against primitives and gain against spp, by accelerator";
+    losses, "losses", NoOptions, needs serial, "why a schedule is not as many times as fast as it has workers: work inflation, idle time, merge";
     schedules, "schedules", NoOptions, "time, load imbalance and context switches of each schedule";
 };
 
@@ -134,19 +135,12 @@ pub fn check_figures(definition: &Definition) -> Result<()> {
             .in_file(&definition.file, at)
             .into());
     }
-    check_tables(definition)
-}
-
-/// Refuses tables for figures that the definition does not list, and options that a figure does not have.
-fn check_tables(definition: &Definition) -> Result<()> {
-    for name in definition.figure.keys() {
-        if !definition.figures.contains(name) {
-            let at = place(&definition.text, name);
-            return Err(InputError::new("figure", name, "has parameters, but `figures` does not list it")
-                .allowed(definition.figures.join(", "))
-                .in_file(&definition.file, at)
-                .into());
-        }
+    if let Some(name) = definition.figure.keys().find(|name| !definition.figures.contains(name)) {
+        let at = place(&definition.text, name);
+        return Err(InputError::new("figure", name, "has parameters, but `figures` does not list it")
+            .allowed(definition.figures.join(", "))
+            .in_file(&definition.file, at)
+            .into());
     }
     let mut listed = FIGURES.iter().filter(|entry| definition.figure.contains_key(entry.name));
     listed.try_for_each(|entry| (entry.check)(definition, entry.name))
@@ -164,7 +158,6 @@ pub fn figure_of_serial(definition: &Definition) -> Option<&'static str> {
     figures.into_iter().find(|entry| entry.of_serial).map(|entry| entry.name)
 }
 
-/// The blocks of all figures of the experiment.
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     check_figures(&results.definition)?;
     let mut blocks = Vec::new();

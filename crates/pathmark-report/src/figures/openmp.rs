@@ -1,17 +1,17 @@
 //! Each strategy compared with one of them: OpenMP's dynamic schedule, the field's yardstick, unless the experiment
 //! names another.
 
-use super::prelude::*;
+use crate::prelude::*;
 
 /// The field's yardstick.
 const OPENMP: &str = "openmp-dynamic";
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let yardstick = yardstick(results, "openmp", OPENMP)?;
-    let schedules = results.by_schedule();
+    let schedules = results.by(|row| &row.schedule);
     // If it ran with several numbers of threads, take the largest number that does not exceed the processors.
     let own = schedules.iter().filter(|(schedule, _)| schedule.key.strategy == yardstick);
-    let place = |schedule: &Schedule| (schedule.key.threads <= results.processors(), schedule.key.threads);
+    let place = |schedule: &Schedule| (schedule.key.threads <= results.run.machine.processors, schedule.key.threads);
     let Some((own, own_rows)) = own.max_by_key(|(schedule, _)| place(schedule)) else {
         return Ok(vec![Block::notice(format!("{yardstick} was not run, so there is nothing to compare with."))]);
     };

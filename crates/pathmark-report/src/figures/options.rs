@@ -9,11 +9,7 @@ use serde::{Deserialize, Serialize};
 
 /// The options of a figure. A definition without such a table, as in old folders, gets the options of the experiment of
 /// the same name that the program contains.
-pub(super) fn options<T: DeserializeOwned + Default>(results: &Results, figure: &str) -> Result<T> {
-    read(&results.definition, figure)
-}
-
-fn read<T: DeserializeOwned + Default>(definition: &Definition, figure: &str) -> Result<T> {
+pub(crate) fn options<T: DeserializeOwned + Default>(definition: &Definition, figure: &str) -> Result<T> {
     let path = ["figure", figure];
     if definition.figure.contains_key(figure) {
         return Ok(parse_within(&definition.text, &definition.file, &path)?.unwrap_or_default());
@@ -24,32 +20,32 @@ fn read<T: DeserializeOwned + Default>(definition: &Definition, figure: &str) ->
 }
 
 /// Refuses options that a figure does not have.
-pub(super) fn check<T: DeserializeOwned + Default>(definition: &Definition, figure: &str) -> Result<()> {
-    read::<T>(definition, figure).map(|_: T| ())
+pub(crate) fn check<T: DeserializeOwned + Default>(definition: &Definition, figure: &str) -> Result<()> {
+    options(definition, figure).map(|_: T| ())
 }
 
 /// The options of a figure that has none.
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
-pub(super) struct NoOptions {}
+pub(crate) struct NoOptions {}
 
 /// The options of a figure that compares all others with one.
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Yardstick {
+pub(crate) struct Yardstick {
     yardstick: Option<String>,
 }
 
 /// The name of the yardstick, which the others are compared with.
-pub(super) fn yardstick(results: &Results, figure: &str, default: &str) -> Result<String> {
-    let found: Yardstick = options(results, figure)?;
+pub(crate) fn yardstick(results: &Results, figure: &str, default: &str) -> Result<String> {
+    let found: Yardstick = options(&results.definition, figure)?;
     Ok(found.yardstick.unwrap_or_else(|| default.to_string()))
 }
 
 /// A number above zero.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "f64")]
-pub(super) struct Positive(pub(super) f64);
+pub(crate) struct Positive(pub(crate) f64);
 
 impl TryFrom<f64> for Positive {
     type Error = &'static str;

@@ -1,7 +1,7 @@
 //! The cost of writing pieces into the film, relative to an output whose threads never wait.
 
-use super::prelude::*;
 use crate::measure::OUTPUTS;
+use crate::prelude::*;
 
 /// The rows of an output on the same pieces and threads.
 struct Line<'a> {

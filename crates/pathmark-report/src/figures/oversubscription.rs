@@ -1,6 +1,6 @@
 //! More threads than processors: from more sections of the image with a thread each, and from more threads alone.
 
-use super::prelude::*;
+use crate::prelude::*;
 use crate::serial::{with_pieces, without_pieces};
 
 #[derive(Deserialize, Default)]
@@ -30,7 +30,7 @@ const GRID: &str = "grid:";
 type Lines = BTreeMap<String, Vec<Point>>;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { claim } = options(results, "oversubscription")?;
+    let Options { claim } = options(&results.definition, "oversubscription")?;
     let (mut by_grid, mut by_threads) = (Vec::new(), Vec::new());
     let groups = results.by(|row| (&row.schedule, results.series_name(row), row.spp)).into_iter();
     let cells = groups.map(|(key, rows)| {
@@ -75,7 +75,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 /// each processor.
 fn finding(results: &Results, claim: &Claim) -> Result<Option<Block>> {
     let Claim { per_section, few, sections: [least, most], against } = claim;
-    let processors = results.processors();
+    let processors = results.run.machine.processors;
     let of = |strategy: &str| -> Vec<&Row> {
         results.rows().filter(|row| row.strategy == strategy && row.decomposition.starts_with(GRID)).collect()
     };

@@ -1,8 +1,8 @@
 //! Pairs of contenders: seconds to the same error, and error after the same seconds.
 
-use super::prelude::*;
-use crate::analysis::versus::{equal_error, equal_time};
+use crate::analysis::price::{equal_error, equal_time};
 use crate::contenders::{Contender, contenders};
+use crate::prelude::*;
 
 /// Two contenders, and the error and time at which they are compared.
 struct Pair<'a> {
@@ -68,11 +68,7 @@ fn finding(scene: &str, contenders: &[Contender], place: &Place) -> Option<Strin
     let against = |other: &Contender| equal_error(&first.renderer, &other.renderer, place.rmse);
     let ratios = others.iter().filter_map(|other| Some((other, against(other)?)));
     let (best, ratio) = ratios.max_by(|a, b| a.1.value.total_cmp(&b.1.value))?;
-    let variance = |contender: &Contender| {
-        let &(spp, mse) = contender.renderer.curves.whole().last()?;
-        Some(mse * spp)
-    };
-    let less = variance(first)? / variance(best)?;
+    let less = first.variance()? / best.variance()?;
     let slower = best.renderer.seconds_per_spp.value / first.renderer.seconds_per_spp.value;
     Some(format!(
         "{scene}: to an RMSE of {:.4}, {} takes {:.2} times the seconds of {} ({:.2} to {:.2}). Its samples have {less:.2} times the squared error at the end of the curves, and {} takes {slower:.2} \

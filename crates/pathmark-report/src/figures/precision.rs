@@ -1,8 +1,9 @@
 //! Gains and costs of single precision: time, error, light and failures, beside double precision.
 
 use super::kernels::any_kernel;
-use super::prelude::*;
 use crate::analysis::mean::t_interval;
+use crate::contenders::root_of_mean;
+use crate::prelude::*;
 
 const DOUBLE: &str = "f64";
 const SINGLE: &str = "f32";
@@ -47,13 +48,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         Axis::linear("light of single precision over that of double, less 1, in ten-thousandths").including([0.0]);
     let mut plot = DotPlot::new("Is single precision darker or lighter?", axis, dots.collect());
     plot.guides = vec![(0.0, "as light".to_string())];
-    plot.subtitle = results.machine_line();
+    plot.subtitle = results.run.machine.line();
     plot.caption =
         "Mean over seeds, both precisions with the same random numbers to fewer digits. Bars: 95 %.".to_string();
-    let rmse = |rows: &[&Row]| {
-        let mse = values(rows, |row| row.mse);
-        (mse.iter().sum::<f64>() / mse.len() as f64).sqrt()
-    };
+    let rmse = |rows: &[&Row]| root_of_mean(&values(rows, |row| row.mse));
     let sum = |rows: &[&Row], count: fn(&Row) -> Option<u64>| {
         rows.iter().filter_map(|row| count(row)).sum::<u64>().to_string()
     };

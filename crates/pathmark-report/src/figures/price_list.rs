@@ -1,7 +1,7 @@
 //! The price list: samples and seconds to each accuracy, and predictions of later points from earlier ones.
 
-use super::prelude::*;
 use crate::contenders::{Check, Contender, contenders};
+use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
@@ -11,7 +11,7 @@ pub(super) struct Options {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let goals = options::<Options>(results, "price-list")?.goals;
+    let goals = options::<Options>(&results.definition, "price-list")?.goals;
     let goals = goals.unwrap_or_else(|| [0.1, 0.05, 0.02, 0.01].map(Positive).to_vec());
     let scenes = contenders(results)?;
     let all: Vec<&Contender> = scenes.values().flatten().collect();

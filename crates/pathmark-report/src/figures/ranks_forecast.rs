@@ -1,41 +1,35 @@
 //! Simulated runs of several processes with the jobs measured here, and the errors of the predictions for this machine.
 
-use super::prelude::*;
 use crate::cluster::MessageCosts;
 use crate::experiment::{MESSAGES, read_calibration};
+use crate::prelude::*;
 use crate::rank_forecasts::{
     self, RankPlan, rank_forecast, rank_forecast_blocks, rank_prediction_blocks, rank_predictions,
 };
 use crate::simulate::{Hardware, contenders};
 use std::num::NonZeroUsize;
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Options {
     /// Rules between processes.
-    rules: Vec<String>,
+    rules: Option<Vec<String>>,
     /// The strategy within a process that has several threads.
-    strategy: String,
+    strategy: Option<String>,
     /// Numbers of processes.
-    ranks: Vec<NonZeroUsize>,
+    ranks: Option<Vec<NonZeroUsize>>,
     /// Numbers of threads of a process.
-    threads: Vec<NonZeroUsize>,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        let numbers = |numbers: &[usize]| numbers.iter().copied().filter_map(NonZeroUsize::new).collect();
-        Self {
-            rules: ["static-cyclic", "guided", "dynamic:1"].map(str::to_string).to_vec(),
-            strategy: "work-stealing".to_string(),
-            ranks: numbers(&[2, 4, 8, 16, 32, 64]),
-            threads: numbers(&[1, 4, 16, 64]),
-        }
-    }
+    threads: Option<Vec<NonZeroUsize>>,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { rules, strategy, ranks, threads } = options(results, "ranks-forecast")?;
+    let Options { rules, strategy, ranks, threads } = options(&results.definition, "ranks-forecast")?;
+    let rules = rules.unwrap_or_else(|| ["static-cyclic", "guided", "dynamic:1"].map(str::to_string).to_vec());
+    let strategy = strategy.unwrap_or_else(|| "work-stealing".to_string());
+    let numbers = |own: Option<Vec<NonZeroUsize>>, usual: &[usize]| {
+        own.map_or_else(|| usual.to_vec(), |own| own.into_iter().map(NonZeroUsize::get).collect())
+    };
+    let (ranks, threads) = (numbers(ranks, &[2, 4, 8, 16, 32, 64]), numbers(threads, &[1, 4, 16, 64]));
     let [calibration, messages] = ["calibration.csv", MESSAGES].map(|name| results.folder.join(name));
     if !calibration.is_file() || !messages.is_file() {
         let text = format!("There is no calibration.csv or no {MESSAGES}, so no processes can be simulated.");
@@ -47,8 +41,6 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut blocks = rank_prediction_blocks(&rank_predictions(results, &contenders, messages)?);
     if let Some(trace) = results.largest_serial_trace()? {
         let rules = rules.iter().map(|rule| lab.rank_rule("rules", rule)).collect::<Result<Vec<_>>>()?;
-        let numbers = |numbers: Vec<NonZeroUsize>| numbers.into_iter().map(NonZeroUsize::get).collect::<Vec<_>>();
-        let (ranks, threads) = (numbers(ranks), numbers(threads));
         let hardware = Hardware::default();
         let strategies = &[strategy][..];
         let plan = RankPlan { rules: &rules, strategies, ranks: &ranks, threads: &threads, messages, hardware };

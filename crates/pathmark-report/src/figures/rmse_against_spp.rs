@@ -1,10 +1,10 @@
 //! Error against samples per pixel on two logarithmic axes. Independent samples fall along a line of slope -1/2.
 
-use super::prelude::*;
 use crate::analysis::jackknife::SeedCurves;
 use crate::analysis::mse::over_seeds;
 use crate::analysis::slope::power_law;
 use crate::contenders::{curves_of_seeds, one_per_seed, root_of_mean};
+use crate::prelude::*;
 
 /// The error of an image at some number of samples.
 struct Line {
@@ -76,8 +76,5 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .estimated("RMSE, linear", Decimals(5), |line| line.error)
         .number("RMSE, display", Decimals(5), |line| line.shown)
         .end();
-    let mut blocks = vec![Block::figure("rmse-against-spp", chart)];
-    blocks.extend(findings);
-    blocks.push(table);
-    Ok(blocks)
+    Ok([Block::figure("rmse-against-spp", chart)].into_iter().chain(findings).chain([table]).collect())
 }

@@ -1,8 +1,8 @@
 //! The cost of accuracy in time: error against seconds, a line for each schedule. All schedules of one spp render the
 //! same image with the same error; a better schedule moves the curve to the left.
 
-use super::prelude::*;
 use crate::contenders::one_per_seed;
+use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
@@ -36,7 +36,7 @@ impl Place<'_> {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let goal = options::<Options>(results, "rmse-against-time")?.goal.map_or(0.01, |goal| goal.0);
+    let goal = options::<Options>(&results.definition, "rmse-against-time")?.goal.map_or(0.01, |goal| goal.0);
     let groups = results.by(|row| ((results.series_name(row), &row.schedule), row.spp));
     let cells = groups.into_iter().map(|((key, spp), rows)| {
         let mse = one_per_seed(&rows, |row| row.mse);

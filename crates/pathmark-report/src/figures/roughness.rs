@@ -2,8 +2,7 @@
 //!
 //! Scenes whose names differ only in their ending are the same image, with directions sampled in another way.
 
-use super::prelude::*;
-use crate::reference_image::reference_image;
+use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
@@ -22,7 +21,8 @@ struct Pair<'a> {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let by_facets = options::<Options>(results, "roughness")?.by_facets.unwrap_or_else(|| "-vndf".to_string());
+    let by_facets =
+        options::<Options>(&results.definition, "roughness")?.by_facets.unwrap_or_else(|| "-vndf".to_string());
     let rows = results.by(|row| row.scene.as_str());
     let base = |scene: &'_ str| scene.strip_suffix(by_facets.as_str()).unwrap_or(scene).len();
     let scenes: BTreeSet<(usize, &str)> = rows.keys().map(|scene| (base(scene), &scene[..base(scene)])).collect();
@@ -68,7 +68,7 @@ fn plot(results: &Results, compared: &[(&str, Estimated, Estimated)]) -> DotPlot
     let plot = DotPlot::new("Directions by the facets against directions by the cosine", axis, rows.collect());
     let mut plot = plot.grouped(["variance of the image", "time"]);
     plot.guides = vec![(1.0, "the same".to_string())];
-    plot.subtitle = results.machine_line();
+    plot.subtitle = results.run.machine.line();
     let bars = bars(compared.iter().flat_map(|(_, variance, time)| [*variance, *time]));
     plot.caption = format!("Median of ratios of runs with the same seed. {bars}");
     plot
@@ -116,13 +116,13 @@ fn table(pairs: &[Pair<'_>]) -> Block {
 fn sheet(results: &Results, pairs: &[Pair<'_>]) -> Result<Option<Block>> {
     let mut cells = Vec::new();
     for pair in pairs {
-        let Some(image) = reference_image(results, Some(pair.scene))? else { return Ok(None) };
+        let Some(image) = results.reference_image(Some(pair.scene))? else { return Ok(None) };
         cells.push(Some(Cell::of(&image, vec![pair.scene.to_string(), "reference".to_string()])?));
     }
     let title = "Report B's material by roughness".to_string();
     let sheet = ContactSheet {
         title,
-        subtitle: results.machine_line(),
+        subtitle: results.run.machine.line(),
         rows: vec![cells],
         bars: Vec::new(),
         comparison: Comparison::Wipe,

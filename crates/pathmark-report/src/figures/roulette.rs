@@ -1,7 +1,7 @@
 //! Rules of Russian roulette: efficiency against the vertex after which it begins.
 
-use super::prelude::*;
 use crate::contenders::{Contender, contenders};
+use crate::prelude::*;
 use std::cmp::Ordering;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
@@ -23,7 +23,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     });
     let mut compared: Vec<(&Contender, Estimated)> = compared.collect();
     compared.sort_by(|(a, _), (b, _)| place(a).partial_cmp(&place(b)).unwrap_or(Ordering::Equal));
-    let Some((best, most)) = first_largest(&compared) else {
+    // Of equal gains, the first counts.
+    let Some((best, most)) = compared.iter().rev().max_by(|a, b| a.1.value.total_cmp(&b.1.value)).copied() else {
         let text = format!("There is no comparison of rules: it takes rows with {yardstick}.");
         return Ok(vec![Block::notice(text)]);
     };
@@ -61,13 +62,11 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let (rays, paths) = counts.fold((0.0, 0.0), |sum, row| (sum.0 + row.0, sum.1 + row.1));
         rays / paths
     };
-    let variance =
-        |contender: &Contender| contender.renderer.curves.whole().last().map_or(f64::NAN, |(spp, mse)| spp * mse);
     let title = format!("Rules of roulette; efficiency is against {yardstick}");
     let table = Block::table("roulette", title, &compared)
         .column("scene", |(contender, _)| contender.image.scene.clone())
         .column("rule", |(contender, _)| format!("{} {}", contender.image.estimator, contender.image.roulette))
-        .number("variance of a sample", Decimals(4), |(contender, _)| variance(contender))
+        .number("variance of a sample", Decimals(4), |(contender, _)| contender.variance().unwrap_or(f64::NAN))
         .number("s per sample and pixel", Decimals(6), |(contender, _)| contender.renderer.seconds_per_spp.value)
         .number("rays per sample", Decimals(2), |(contender, _)| rays(contender))
         .estimated("efficiency", Decimals(3), |(_, gain)| *gain)
@@ -80,11 +79,6 @@ fn place(contender: &Contender) -> (&str, &str, &str, f64) {
     let image = &contender.image;
     let (rule, start) = image.roulette.split_once(':').unwrap_or((&image.roulette, ""));
     (&image.scene, &image.estimator, rule, start.parse().unwrap_or(0.0))
-}
-
-/// The contender with the largest gain; of equal ones, the first.
-fn first_largest<'a>(compared: &[(&'a Contender, Estimated)]) -> Option<(&'a Contender, Estimated)> {
-    compared.iter().rev().max_by(|a, b| a.1.value.total_cmp(&b.1.value)).copied()
 }
 
 /// The ratio of two efficiencies, each from the errors and times of independent seeds.

@@ -1,7 +1,7 @@
 //! Laws of speedup fitted to the measured speedups. If the points do not determine a law, the table says why.
 
-use super::prelude::*;
 use crate::analysis::scaling_law::{Fit, Law, Parameter, Point, fit};
+use crate::prelude::*;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(vec![table(results, &[Law::Amdahl, Law::Universal], "scaling-laws")?])
@@ -10,7 +10,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 /// A table of the fits of each law to each strategy, over numbers of workers that have a processor each. Beyond that,
 /// more workers do not use more of the machine.
 pub(super) fn table(results: &Results, laws: &[Law], stem: &'static str) -> Result<Block> {
-    let processors = results.processors();
+    let processors = results.run.machine.processors;
     let lines = results.serial()?.lines(processors);
     let fits = lines.iter().flat_map(|(name, points)| laws.iter().map(move |law| (name, law, in_words(*law, points))));
     let title = format!("Laws of speedup, up to {processors} threads on {processors} processors");

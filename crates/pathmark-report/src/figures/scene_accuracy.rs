@@ -1,10 +1,10 @@
 //! Error by scene at the same samples per pixel. It tests report A's claim that scenes without reflections are more
 //! accurate; a control exchanges the materials of one scene.
 
-use super::prelude::*;
 use crate::analysis::mean::t_interval;
 use crate::analysis::mse::over_seeds;
 use crate::analysis::rank::spearman;
+use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
@@ -55,7 +55,7 @@ impl Accuracy {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { goal, control } = options(results, "scene-accuracy")?;
+    let Options { goal, control } = options(&results.definition, "scene-accuracy")?;
     let mut scenes = accuracies(results)?;
     if scenes.is_empty() {
         let text = "There is no accuracy by scene: it takes errors against references, and the kept images.";
@@ -99,7 +99,6 @@ fn accuracies(results: &Results) -> Result<Vec<Accuracy>> {
     Ok(results.by(kind).into_iter().filter_map(of_scene).collect())
 }
 
-/// The image without its seed.
 fn kind(row: &Row) -> ImageKey {
     row.image.without_seed()
 }

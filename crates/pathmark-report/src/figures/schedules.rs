@@ -1,6 +1,6 @@
 //! A table of schedules: time, balance, context switches.
 
-use super::prelude::*;
+use crate::prelude::*;
 
 /// The rows of an image under a schedule, and their median time.
 struct Line<'a> {
@@ -12,13 +12,13 @@ struct Line<'a> {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let processors = results.processors();
+    let processors = results.run.machine.processors;
     let groups = results.by(|row| (results.series_name(row), row.spp, &row.schedule));
     let lines = groups.into_iter().filter_map(|((series, ..), rows)| {
         let first = *rows.first()?;
         let image = if series.is_empty() { first.scene.clone() } else { series };
         let times = values(&rows, |row| row.makespan_s);
-        Some(Line { image, first, seconds: results.median(&times)?, times, rows })
+        Some(Line { image, first, seconds: Estimated::median(&times, results.stopping())?, times, rows })
     });
     // A job's seconds include waiting for a processor, so with more workers than processors they do not show balance.
     let alone = |row: &Row| (row.workers_used? as usize <= processors).then_some(());

@@ -1,7 +1,7 @@
 //! A against A: odd and even repetitions of the same cell, compared as other experiments compare different cells.
 
-use super::prelude::*;
 use crate::analysis::aa_test::{Comparison, calibration};
+use crate::prelude::*;
 
 /// Pairs in a comparison: the smallest number whose interval of the median reaches 95 %.
 const PAIRS: usize = 6;

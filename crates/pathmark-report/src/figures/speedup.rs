@@ -1,10 +1,9 @@
 //! Speedup against `serial`, efficiency, and the serial fraction by Karp and Flatt, which explains the missing speedup.
 
-use super::prelude::*;
 use crate::analysis::scaling_law::{Check, Fit, Fitted, Law, fit};
-use crate::analysis::speedup::{Oddity, efficiency, oddity, serial_fraction_within};
-use crate::analysis::superlinear::{Evidence, cause};
+use crate::analysis::speedup::{Evidence, Oddity, cause, efficiency, oddity, serial_fraction_within};
 use crate::measure::TimingConcerns;
+use crate::prelude::*;
 use crate::schedule::is_of_ranks;
 use crate::serial::Serial;
 use crate::words::hollow;
@@ -40,7 +39,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let images: BTreeMap<_, _> = all.iter().map(|(schedule, _)| (*schedule, images(schedule))).collect();
     let peers = gathered(images.iter().map(|(schedule, own)| (own, schedule))).into_iter();
     let usual = peers.max_by_key(|(_, schedules)| schedules.len()).map(|(own, _)| own.clone()).unwrap_or_default();
-    let found = Speedups { results, serial, all, asked, processors: results.processors(), images, usual };
+    let found = Speedups { results, serial, all, asked, processors: results.run.machine.processors, images, usual };
     let mut blocks = found.figures();
     blocks.extend(found.best()?);
     blocks.extend(found.thread_per_row());
@@ -54,12 +53,26 @@ impl Speedups<'_> {
         threads.min(self.processors)
     }
 
+    /// The same, where cores of a slower kind count by their speed.
+    fn weight_in_use(&self, threads: usize) -> f64 {
+        self.results.run.machine.layout.weight(self.in_use(threads))
+    }
+
+    /// A sentence about the weights of cores; empty if all are alike.
+    fn weights(&self) -> &'static str {
+        if self.results.run.machine.layout.kinds.len() > 1 {
+            " Cores of this machine differ in speed, so each counts by its capacity, the fastest first."
+        } else {
+            ""
+        }
+    }
+
     fn has_a_thread_per_job(&self, schedule: &Schedule) -> bool {
         !self.asked.is_empty() && !self.asked.contains(&schedule.key.threads)
     }
 
     fn figures(&self) -> Vec<Block> {
-        let per_processor = |speedup: f64, threads: usize| speedup / self.in_use(threads) as f64;
+        let per_processor = |speedup: f64, threads: usize| speedup / self.weight_in_use(threads);
         let strategies: BTreeSet<&str> = self.all.iter().map(|(schedule, _)| schedule.name.as_str()).collect();
         if strategies.len() <= MOST_LINES {
             let (speedup, efficiency) = (self.speedup_chart(), self.efficiency_chart(&per_processor));
@@ -69,7 +82,11 @@ impl Speedups<'_> {
         let efficiency = ["Efficiency by strategy", "speedup per processor in use", "ideal"];
         vec![
             Block::figure("speedup", self.dots(speedup, &|speedup, _| speedup)),
-            Block::figure("efficiency", self.dots(efficiency, &per_processor)),
+            Block::figure("efficiency", {
+                let mut plot = self.dots(efficiency, &per_processor);
+                plot.caption += self.weights();
+                plot
+            }),
         ]
     }
 
@@ -88,7 +105,9 @@ impl Speedups<'_> {
             .column("threads", |(schedule, _)| schedule.key.threads.to_string())
             .estimated("speedup", Decimals(3), |(_, speedup)| Estimated::from(*speedup))
             .number("efficiency per thread", Decimals(3), |(s, speedup)| efficiency(speedup.value, s.key.threads))
-            .number("efficiency per processor in use", Decimals(3), |(s, speedup)| efficiency(speedup.value, used(s)))
+            .number("efficiency per processor in use", Decimals(3), |(s, speedup)| {
+                Some(speedup.value / self.weight_in_use(s.key.threads)).filter(|value| value.is_finite())
+            })
             .number("work inflation", Decimals(3), |(schedule, _)| work_inflation.get(schedule).copied())
             .estimated("e, p = threads", Decimals(3), |own| fraction(own, own.0.key.threads))
             .estimated("e, p = processors in use", Decimals(3), |own| fraction(own, used(own.0)))
@@ -237,16 +256,16 @@ impl Speedups<'_> {
                 return None;
             };
             let serial_share = parameters.first()?.estimate.value;
-            let curve = Curve::Scaling { contention: serial_share, coherence: 0.0 };
             let line = series.iter().position(|series| series.name == name)?;
-            Some(Overlay::fit(format!("{name}: Amdahl, s = {serial_share:.3}"), curve, line))
+            Some(Overlay::fit(format!("{name}: Amdahl, s = {serial_share:.3}"), Curve::Amdahl { serial_share }, line))
         };
         self.serial.lines(self.processors).into_iter().filter_map(overlay).collect()
     }
 
     fn efficiency_chart(&self, per_processor: &dyn Fn(f64, usize) -> f64) -> LineChart {
         let y = Axis::linear("speedup per processor in use").including([0.5, 1.05]);
-        let caption = &format!("Processors in use: the smaller of threads and processors. {}", self.bars());
+        let weights = self.weights();
+        let caption = &format!("Processors in use: the smaller of threads and processors.{weights} {}", self.bars());
         let mut chart = self.chart("Efficiency against threads", y, self.series(per_processor), caption);
         chart.overlays = vec![Overlay::guide("ideal: 1", Curve::Line { intercept: 1.0, slope: 0.0 })];
         chart

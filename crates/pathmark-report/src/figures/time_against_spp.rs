@@ -1,7 +1,7 @@
 //! Seconds against samples per pixel: a line through the origin if only sampling takes time.
 
-use super::prelude::*;
 use crate::analysis::fit::{line, log_log};
+use crate::prelude::*;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let several = results.by(|row| row.schedule.label()).len() > 1;
@@ -16,7 +16,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let cells = cells.map(|(spp, rows)| (spp, Repeats::of_rows(rows, |row| row.makespan_s)));
         // The fit compares them, so all come from the same repetitions.
         let times = in_common(cells.collect()).into_iter().filter_map(|(spp, seconds)| {
-            let seconds = results.median(&seconds)?;
+            let seconds = Estimated::median(&seconds, results.stopping())?;
             all.push(seconds);
             Some(seconds.above(f64::from(spp)))
         });

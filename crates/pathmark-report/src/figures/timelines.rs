@@ -1,14 +1,14 @@
 //! Timelines: a lane for each worker, and the shares of workers times makespan.
 
-use super::prelude::*;
 use crate::analysis::balance::Balance;
+use crate::prelude::*;
 use crate::timeline;
 
 /// A run, its balance, and whether it had a processor for each worker.
 type Run = (String, Balance, bool);
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let processors = results.processors();
+    let processors = results.run.machine.processors;
     let (mut schedules, mut runs) = (Vec::new(), Vec::<Run>::new());
     let groups = results.by(|row| (&row.schedule, results.series_name(row), row.spp));
     let mut groups: Vec<_> = groups.into_iter().collect();
@@ -35,7 +35,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("tail", |(_, balance, _)| share(balance, balance.tail_s()))
         .number("load imbalance", Decimals(3), |(_, balance, alone)| balance.imbalance().filter(|_| *alone))
         .column("gap per job, µs", |(_, balance, alone)| {
-            number(balance.overhead_per_job_s().map(|seconds| seconds * 1e6).filter(|_| *alone), 2)
+            let seconds = balance.overhead_per_job_s().filter(|_| *alone);
+            seconds.map_or_else(|| "-".to_string(), |seconds| format!("{:.2}", seconds * 1e6))
         })
         .end();
     Ok(vec![Block::figure("timelines", chart), table])

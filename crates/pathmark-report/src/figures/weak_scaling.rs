@@ -1,8 +1,8 @@
 //! Scaled speedup: the serial program's time for the larger problem over the schedule's time.
 
-use super::prelude::*;
 use super::scaling_laws;
 use crate::analysis::scaling_law::Law;
+use crate::prelude::*;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let serial = results.serial()?;

@@ -1,15 +1,13 @@
 //! Results of `cargo bench --bench scheduling`: it writes `benches/benches.csv` into the folder that
 //! `PATHMARK_BENCH_OUT` names.
 
-use crate::block::Block;
 use crate::csv_file;
-use crate::error::{Error, Result};
+use crate::error::Error;
 use crate::experiment::{Chapter, MACHINE, RunFile, read_run_file};
 use crate::page::Section;
-use crate::plot::{Axis, Dot, DotPlot, DotRow};
-use crate::table::Digits::Decimals;
-use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use crate::plot::Dot;
+use crate::prelude::*;
+use serde::Serialize;
 use std::path::Path;
 
 /// Name of the file's folder within the results.
@@ -39,7 +37,6 @@ pub struct BenchRow {
     pub median_s: f64,
     /// Lower end of its 95 % interval.
     pub low_s: f64,
-    /// Upper end of its 95 % interval.
     pub high_s: f64,
     /// Speedup over serial runs in adjacent pairs; empty for cases that are not compared.
     #[serde(default)]
@@ -59,7 +56,7 @@ pub fn write_benches(out: &Path, command: String, rows: &[BenchRow]) -> Result<(
     csv_file::write(&folder.join(FILE), rows)
 }
 
-/// The section, if a folder has such a file. Writes its figure and tables beside the file.
+/// The section, if a folder has such a file.
 pub(crate) fn section(out: &Path) -> Result<Option<Section>> {
     let folder = out.join(FOLDER);
     let path = folder.join(FILE);
@@ -71,7 +68,7 @@ pub(crate) fn section(out: &Path) -> Result<Option<Section>> {
     let speedups = speedups(&rows);
     let mut blocks = Vec::new();
     if !speedups.is_empty() {
-        blocks.push(Block::Figure { stem: "speedup", figure: Box::new(plot(&speedups, run.machine.line())) });
+        blocks.push(Block::figure("speedup", plot(&speedups, run.machine.line())));
         blocks.push(speedup_table(&speedups));
     }
     let seam = pairs(&rows);
@@ -79,9 +76,6 @@ pub(crate) fn section(out: &Path) -> Result<Option<Section>> {
         blocks.push(seam_table(&seam));
     }
     blocks.push(all(&rows));
-    for block in &blocks {
-        block.save(&folder.join("figures"))?;
-    }
     Ok(Some(Section {
         name: FOLDER.to_string(),
         title: "What cargo bench measured".to_string(),

@@ -6,37 +6,18 @@ use crate::error::{Error, Result};
 use crate::plot::{Comparison, ContactSheet, Figure, Placed};
 use std::path::Path;
 
-/// One part of an experiment's section.
+/// One part of an experiment's section. A stem is the name of its file without the ending.
 pub enum Block {
     /// The result in a sentence or two.
     Finding(String),
     /// A missing part, with the reason. It says nothing about the measurements.
     Notice(String),
     /// A figure as SVG and PNG.
-    Figure {
-        /// File name without its ending.
-        stem: &'static str,
-        /// The drawing.
-        figure: Box<dyn Figure>,
-    },
-    /// A PNG image.
-    Picture {
-        /// File name without its ending.
-        stem: &'static str,
-        /// Its subject, for readers who cannot see it.
-        title: String,
-        /// The PNG file.
-        png: Vec<u8>,
-        /// How the page compares its images.
-        comparison: Comparison,
-        /// Their positions in the picture.
-        images: Vec<Placed>,
-    },
-    Table {
-        /// File name without its ending.
-        stem: &'static str,
-        table: Table,
-    },
+    Figure { stem: &'static str, figure: Box<dyn Figure> },
+    /// A PNG image of several, with its subject for readers who cannot see it, and the places of the images.
+    Picture { stem: &'static str, title: String, png: Vec<u8>, comparison: Comparison, images: Vec<Placed> },
+    /// A table, which is also a CSV file.
+    Table { stem: &'static str, table: Table },
 }
 
 impl Block {
@@ -57,14 +38,13 @@ impl Block {
         Self::Figure { stem, figure: Box::new(figure) }
     }
 
-    /// A sheet of images.
     pub(crate) fn sheet(stem: &'static str, sheet: &ContactSheet) -> Result<Self> {
         let (png, images) = sheet.png()?;
         Ok(Self::Picture { stem, title: sheet.title.clone(), png, comparison: sheet.comparison, images })
     }
 
     /// Writes the figure, picture or table (as CSV) into the folder.
-    pub(crate) fn save(&self, folder: &Path) -> Result<()> {
+    pub fn save(&self, folder: &Path) -> Result<()> {
         std::fs::create_dir_all(folder).map_err(|e| Error::system("creating", folder, e))?;
         match self {
             Self::Finding(_) | Self::Notice(_) => Ok(()),

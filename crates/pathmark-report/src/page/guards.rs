@@ -1,14 +1,10 @@
 //! The price list of the guards: `guards/guards.csv`, which `pathmark selftest --out` and `reproduce` write.
 
-use crate::analysis::Interval;
-use crate::block::Block;
-use crate::error::Result;
-use crate::estimated::{Estimated, LEVEL};
 use crate::experiment::{Chapter, read_run_file};
 use crate::guard_prices::{FILE, FOLDER, PriceRow, read_prices};
 use crate::page::Section;
-use crate::plot::{Axis, Dot, DotPlot, DotRow};
-use crate::table::Digits::{Decimals, Significant};
+use crate::plot::Dot;
+use crate::prelude::*;
 use std::path::Path;
 
 const QUESTION: &str = "What does it cost to be right on hard inputs, and how wrong is what would do on easy ones?";
@@ -17,7 +13,7 @@ const ANALYSIS: &str = "A guard is extra work that keeps hard inputs correct; on
 A ratio above 1 is what the guard costs in the operation that it guards; in an image it is far less, because an image does much besides. Where the ratio is below 1, being right is also faster.\n\n\
 The simpler variants are not options of the program: a table of hard cases (`pathmark selftest`) insists that the program passes where they fail.";
 
-/// The section, if a folder has a price list. Writes its figure and tables beside the list.
+/// The section, if a folder has a price list.
 pub(crate) fn section(out: &Path) -> Result<Option<Section>> {
     let folder = out.join(FOLDER);
     let path = folder.join(FILE);
@@ -26,14 +22,7 @@ pub(crate) fn section(out: &Path) -> Result<Option<Section>> {
     }
     let rows = read_prices(&path)?;
     let run = read_run_file(&folder.join("machine.toml"))?;
-    let blocks = vec![
-        Block::Figure { stem: "guards", figure: Box::new(plot(&rows, run.machine.line())) },
-        prices(&rows),
-        meanings(&rows),
-    ];
-    for block in &blocks {
-        block.save(&folder.join("figures"))?;
-    }
+    let blocks = vec![Block::figure("guards", plot(&rows, run.machine.line())), prices(&rows), meanings(&rows)];
     Ok(Some(Section {
         name: FOLDER.to_string(),
         title: "What being right costs: the guards".to_string(),

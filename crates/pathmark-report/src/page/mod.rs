@@ -3,7 +3,7 @@
 mod again;
 pub(crate) mod benches;
 pub(crate) mod block;
-mod columns;
+pub(crate) mod doctor;
 pub(crate) mod guards;
 pub(crate) mod table;
 
@@ -62,9 +62,7 @@ pub(crate) struct Section {
     pub(crate) in_short: Option<String>,
     /// The commands that run a part again; `None` if there are none.
     pub(crate) again: Option<Again>,
-    /// Rows that failed.
     pub(crate) failed: Vec<Record>,
-    /// Rows that were not run.
     pub(crate) left_out: LeftOut,
     /// Number of rows that were run and did not fail.
     pub(crate) rows: usize,
@@ -76,7 +74,6 @@ pub(crate) struct Section {
 }
 
 impl Section {
-    /// The section of an experiment.
     pub(crate) fn of(results: Results, blocks: Vec<Block>) -> Self {
         let rows = results.len();
         let doubts = results.doubts();
@@ -93,7 +90,6 @@ impl Section {
 /// Longer cells are prose and may be broken into lines.
 const LONGEST_CELL: usize = 56;
 
-/// The page.
 pub(crate) fn html(sections: &[Section]) -> Result<String> {
     let claims = sections.iter().filter(|section| section.chapter.is_none());
     let claims = claims.map(|section| self::section(section, true)).collect::<Result<Vec<Markup>>>()?;
@@ -348,7 +344,15 @@ fn provenance(section: &Section, run: &RunFile) -> Markup {
         ("memory", or_unknown(machine.memory_bytes, memory)),
         ("system", machine.system.clone()),
         ("load when the sweep began", machine.load_average.clone()),
-        ("compiler", format!("{}, profile {}, flags {}", machine.rustc, machine.profile, or_none(&machine.rustflags))),
+        (
+            "compiler",
+            format!(
+                "{}, profile {}, flags {}",
+                machine.rustc,
+                machine.profile,
+                if machine.rustflags.is_empty() { "none" } else { &machine.rustflags }
+            ),
+        ),
         ("program", program.clone()),
         (
             "Pathmark's sources",
@@ -376,10 +380,6 @@ fn prose(text: &str) -> Markup {
             @if index % 2 == 1 { code { (part) } } @else { (part) }
         }
     }
-}
-
-fn or_none(text: &str) -> &str {
-    if text.is_empty() { "none" } else { text }
 }
 
 #[cfg(test)]

@@ -11,24 +11,15 @@ pub enum Scale {
     Log,
 }
 
-/// The labelled values of an axis.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Ticks {
-    /// Round numbers.
-    Auto,
-    /// Exactly these values, such as the thread counts or spp of an experiment.
-    At(Vec<f64>),
-}
-
 /// The quantity, scale and labels of an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// Quantity and unit.
     pub label: String,
-    /// Linear or logarithmic.
     pub scale: Scale,
-    /// The labelled values.
-    pub ticks: Ticks,
+    /// The labelled values, such as the thread counts or spp of an experiment, in ascending order; `None` for round
+    /// numbers.
+    pub ticks: Option<Vec<f64>>,
     /// Values that the axis must reach even if no point does, such as 0 or 1.
     pub include: Vec<f64>,
 }
@@ -36,10 +27,9 @@ pub struct Axis {
 impl Axis {
     /// A linear axis with automatic ticks.
     pub fn linear(label: impl Into<String>) -> Self {
-        Self { label: label.into(), scale: Scale::Linear, ticks: Ticks::Auto, include: Vec::new() }
+        Self { label: label.into(), scale: Scale::Linear, ticks: None, include: Vec::new() }
     }
 
-    /// A logarithmic axis with automatic ticks.
     pub fn log(label: impl Into<String>) -> Self {
         Self { scale: Scale::Log, ..Self::linear(label) }
     }
@@ -50,7 +40,7 @@ impl Axis {
         let mut values: Vec<f64> = values.into_iter().collect();
         values.sort_by(f64::total_cmp);
         values.dedup();
-        self.ticks = Ticks::At(values);
+        self.ticks = Some(values);
         self
     }
 
@@ -119,16 +109,11 @@ impl Range {
     }
 
     /// Ticks in ascending order; of automatic ones, about `most` at most have labels.
-    pub fn ticks(&self, ticks: &Ticks, most: usize) -> Vec<Tick> {
-        match (ticks, self.scale) {
-            (Ticks::At(values), _) => {
-                let mut wanted = values.clone();
-                wanted.sort_by(f64::total_cmp);
-                wanted.dedup();
-                wanted.iter().filter_map(|&value| self.tick(value, number::short(value, 6))).collect()
-            }
-            (Ticks::Auto, Scale::Linear) => self.linear_ticks(self.low, self.high, most),
-            (Ticks::Auto, Scale::Log) => self.log_ticks(most),
+    pub fn ticks(&self, labelled: Option<&[f64]>, most: usize) -> Vec<Tick> {
+        match (labelled, self.scale) {
+            (Some(values), _) => values.iter().filter_map(|&value| self.tick(value, number::short(value, 6))).collect(),
+            (None, Scale::Linear) => self.linear_ticks(self.low, self.high, most),
+            (None, Scale::Log) => self.log_ticks(most),
         }
     }
 
@@ -218,7 +203,7 @@ mod tests {
 
     fn labels(axis: &Axis, values: &[f64], most: usize) -> Vec<String> {
         let range = Range::of(axis, values.iter().copied()).unwrap();
-        let ticks = range.ticks(&axis.ticks, most);
+        let ticks = range.ticks(axis.ticks.as_deref(), most);
         assert!(ticks.windows(2).all(|pair| pair[0].place < pair[1].place));
         ticks.into_iter().map(|tick| tick.label).filter(|label| !label.is_empty()).collect()
     }
@@ -268,7 +253,7 @@ mod tests {
                     let place = range.place(value).unwrap();
                     assert!((0.0..=1.0).contains(&place), "{values:?} {place}");
                 }
-                assert!(range.ticks(&Ticks::Auto, 6).len() < 200, "{values:?}");
+                assert!(range.ticks(None, 6).len() < 200, "{values:?}");
             }
         }
         assert_eq!(Range::of(&Axis::linear("x"), [f64::NAN, f64::INFINITY]), None);

@@ -4,13 +4,12 @@ use super::drawing::{Align, Drawing, Place};
 use super::style::{GRID, HAIRLINE, INK, LEADING, SMALL_SIZE, TEXT_SIZE};
 use crate::metric::heat_colour;
 
-/// Height of a bar.
 const HEIGHT: f64 = 14.0;
 /// Number of colours in a bar.
 const STEPS: u32 = 128;
 
-/// Draws a bar with its name above and labels at its quarters below, the upper left corner at a position; returns the y
-/// below it.
+/// Draws a bar with its name above and labels at its quarters below, which are given by shares of its length; the upper
+/// left corner is at a position. Returns the y below it.
 ///
 /// `ends`, in [0, 1], are the positions of the bar's ends on the whole colour scale.
 pub(super) fn draw(
@@ -19,7 +18,7 @@ pub(super) fn draw(
     width: f64,
     ends: (f64, f64),
     name: &str,
-    labels: &[String; 5],
+    label: impl Fn(f64) -> String,
 ) -> f64 {
     drawing.text((left, y + 0.5 * TEXT_SIZE), name, TEXT_SIZE, INK, Align::Left);
     let top = y + TEXT_SIZE * LEADING + 2.0;
@@ -30,11 +29,10 @@ pub(super) fn draw(
         let colour = heat_colour(ends.0 + share * (ends.1 - ends.0));
         drawing.rectangle([edge(i), top, edge(i + 1), top + HEIGHT], colour);
     }
-    for (quarter, label) in labels.iter().enumerate() {
-        let share = quarter as f64 / 4.0;
+    for share in [0.0, 0.25, 0.5, 0.75, 1.0] {
         drawing.path(vec![(x(share), top + HEIGHT), (x(share), top + HEIGHT + 4.0)], INK, HAIRLINE);
-        let align = if quarter == 0 { Align::Left } else { Align::Centre };
-        drawing.text((x(share), top + HEIGHT + 12.0), label, SMALL_SIZE, INK, align);
+        let align = if share == 0.0 { Align::Left } else { Align::Centre };
+        drawing.text((x(share), top + HEIGHT + 12.0), &label(share), SMALL_SIZE, INK, align);
     }
     drawing.path(vec![(left, top), (x(1.0), top)], GRID, HAIRLINE);
     top + HEIGHT + 12.0 + SMALL_SIZE

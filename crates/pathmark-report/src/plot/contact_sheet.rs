@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::drawing::{Align, Drawing};
 use super::style::{INK, LEADING, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
-use super::{colour_bar, font, heading, number, paint};
+use super::{colour_bar, font, frame, number, paint};
 use crate::error::{Error, Result};
 use crate::image_io::Image;
 use crate::image_io::tone_map::quantise_image;
@@ -20,14 +20,11 @@ const REDUCED: u32 = 224;
 /// Space between images.
 const GAP: f64 = 16.0;
 
-/// One image with its caption.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cell {
     /// Lines above the image: the first is the title.
     pub caption: Vec<String>,
-    /// Width in pixels.
     pub width: u32,
-    /// Height in pixels.
     pub height: u32,
     /// Red, green and blue of each pixel, rows from the top; `3 * width * height` bytes.
     pub rgb: Vec<u8>,
@@ -78,7 +75,6 @@ pub struct Placed {
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactSheet {
-    /// The subject, in one line.
     pub title: String,
     /// Scene, size, exposure; may be empty.
     pub subtitle: String,
@@ -86,11 +82,20 @@ pub struct ContactSheet {
     pub rows: Vec<Vec<Option<Cell>>>,
     /// The scales of the heat maps, if there are any.
     pub bars: Vec<ColourBar>,
-    /// How the images are compared on a page.
     pub comparison: Comparison,
 }
 
+/// The most images in a row that fit on the page.
+const COLUMNS: usize = 4;
+
 impl ContactSheet {
+    /// A sheet of images in rows that fit on a page.
+    pub fn grid(title: String, subtitle: String, cells: Vec<Cell>, comparison: Comparison) -> Self {
+        let cells: Vec<Option<Cell>> = cells.into_iter().map(Some).collect();
+        let rows = cells.chunks(COLUMNS).map(<[Option<Cell>]>::to_vec).collect();
+        Self { title, subtitle, rows, bars: Vec::new(), comparison }
+    }
+
     /// The sheet as pixels, and the areas of its images.
     pub fn pixels(&self) -> Result<(RgbImage, Vec<Placed>)> {
         let rows = self.rows.iter().map(|row| row.iter().map(|cell| cell.as_ref().map(shown).transpose()).collect());
@@ -101,7 +106,7 @@ impl ContactSheet {
         let width = 2.0 * MARGIN + columns * (column + GAP) - GAP;
 
         let mut drawing = Drawing::new(&self.title, width, 0.0);
-        let mut y = heading::above(&mut drawing, &self.title, &self.subtitle);
+        let mut y = frame::words_above(&mut drawing, &self.title, &self.subtitle);
         let mut placed = Vec::new();
         for (number, (cells, row)) in self.rows.iter().zip(&images).enumerate() {
             y += GAP;
@@ -130,10 +135,11 @@ impl ContactSheet {
         }
         for bar in &self.bars {
             let width = (2.0 * column + GAP).min(width - 2.0 * MARGIN - 40.0);
-            let quarters = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| number::short(share * bar.full, 3));
-            let [zero, first, half, third, full] = quarters;
-            let labels = [zero, first, half, third, if bar.is_largest { full } else { format!("≥ {full}") }];
-            y = colour_bar::draw(&mut drawing, (MARGIN, y + 1.5 * GAP), width, (0.0, 1.0), &bar.label, &labels);
+            let label = |share: f64| {
+                let open = if share == 1.0 && !bar.is_largest { "≥ " } else { "" };
+                format!("{open}{}", number::short(share * bar.full, 3))
+            };
+            y = colour_bar::draw(&mut drawing, (MARGIN, y + 1.5 * GAP), width, (0.0, 1.0), &bar.label, label);
         }
         drawing.height = (y + MARGIN).ceil();
         let mut sheet = paint::pixels(&drawing, 1.0)?;

@@ -5,12 +5,11 @@
 use super::Figure;
 use super::axis::{Axis, Range};
 use super::drawing::{Align, Drawing, Note, PartKind, Place};
-use super::frame::WIDTH;
+use super::frame::{self, GAP, TICK, WIDTH};
 use super::legend::{self, LegendEntry, Sample};
 use super::number::{between, short};
-use super::ruler::{self, GAP, TICK};
 use super::style::{DASHES, FAINT, HAIRLINE, INK, LEADING, Look, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
-use super::{font, heading, marker};
+use super::{font, marker};
 
 /// Largest width of a row's name; longer ones are broken.
 const WIDEST: f64 = 260.0;
@@ -21,7 +20,6 @@ const GROUP: f64 = 11.0;
 /// Width of a guide's line.
 const GUIDE: f64 = 1.5;
 
-/// A value and its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dot {
     /// The value, in the axis' unit.
@@ -50,34 +48,20 @@ pub struct DotRow {
 }
 
 impl DotRow {
-    /// A row.
     pub fn new(name: impl Into<String>, dots: Vec<Option<Dot>>) -> Self {
         Self { name: name.into(), dots }
     }
 }
 
-/// A group of dots, one in each row.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Group {
-    /// Its name in the legend.
-    pub name: String,
-    /// Colour and marker.
-    pub look: Look,
-}
-
 /// The plot. Leaves out dots without a position on its axis, and reports their number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DotPlot {
-    /// The subject, in one line.
     pub title: String,
-    /// Workload, machine, meaning of the bars; may be empty.
     pub subtitle: String,
-    /// Remarks below the plot; may be empty.
     pub caption: String,
-    /// The horizontal axis.
     pub axis: Axis,
-    /// The groups. A single one has no entry in the legend.
-    pub groups: Vec<Group>,
+    /// The names of the groups. A single one has no entry in the legend.
+    pub groups: Vec<String>,
     /// The rows, the first at the top.
     pub rows: Vec<DotRow>,
     /// Vertical lines, such as one at a ratio of 1, each with its name in the legend.
@@ -87,16 +71,14 @@ pub struct DotPlot {
 impl DotPlot {
     /// A plot of `rows` with one group.
     pub fn new(title: impl Into<String>, axis: Axis, rows: Vec<DotRow>) -> Self {
-        let groups = vec![Group { name: String::new(), look: Look::nth(0) }];
         let (subtitle, caption) = (String::new(), String::new());
-        Self { title: title.into(), subtitle, caption, axis, groups, rows, guides: Vec::new() }
+        Self { title: title.into(), subtitle, caption, axis, groups: vec![String::new()], rows, guides: Vec::new() }
     }
 
     /// The same plot with a group for each name; each row has a dot for each group.
     #[must_use]
     pub fn grouped(mut self, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
-        let group = |(index, name): (usize, _)| Group { name: Into::into(name), look: Look::nth(index) };
-        self.groups = names.into_iter().enumerate().map(group).collect();
+        self.groups = names.into_iter().map(Into::into).collect();
         self
     }
 
@@ -116,10 +98,11 @@ impl DotPlot {
     }
 
     fn entries(&self) -> Vec<LegendEntry> {
-        let groups = self.groups.iter().filter(|_| self.groups.len() > 1);
-        let dots = groups.map(|group| LegendEntry::new(Sample::Series { look: group.look, line: false }, &group.name));
+        let groups = self.groups.iter().enumerate().filter(|_| self.groups.len() > 1);
+        let sample = |group| Sample::Series { look: Look::nth(group), line: false };
+        let dots = groups.map(|(group, name)| LegendEntry::new(sample(group), name, name));
         let guides = self.guides.iter().enumerate().map(|(index, (_, name))| {
-            LegendEntry::new(Sample::Line { colour: MUTED, dash: DASHES[1 + index % 2], width: GUIDE }, name)
+            LegendEntry::new(Sample::Line { colour: MUTED, dash: DASHES[1 + index % 2], width: GUIDE }, name, name)
         });
         dots.chain(guides).collect()
     }
@@ -138,7 +121,7 @@ impl DotPlot {
         let last = self.dots(row).count().saturating_sub(1) as f64;
         // Dots are centred on the row's line, whichever groups have one, so that dots of two rows do not mix.
         for (index, (group, dot)) in self.dots(row).enumerate() {
-            let look = self.groups[group].look;
+            let look = Look::nth(group);
             let y = middle + GROUP * (index as f64 - 0.5 * last);
             let Some(place) = range.place(dot.value) else {
                 lost += 1;
@@ -146,7 +129,7 @@ impl DotPlot {
             };
             // An end that is too low for a logarithmic axis is drawn at the edge.
             let end = |value: f64| Some(x(range.place(value).or((value <= 0.0).then_some(0.0))?.clamp(0.0, 1.0)));
-            let name = &self.groups[group].name;
+            let name = &self.groups[group];
             drawing.part(PartKind::Series, name, |drawing| {
                 if let Some((low, high)) = dot.interval.and_then(|(low, high)| end(low).zip(end(high))) {
                     marker::bar(drawing, (low, y), (high, y), look.colour);
@@ -172,7 +155,7 @@ fn note(row: &DotRow, group: &str, dot: &Dot, at: Place) -> Note {
 impl Figure for DotPlot {
     fn drawing(&self) -> Drawing {
         let mut drawing = Drawing::new(&self.title, WIDTH, 0.0);
-        let top = heading::above(&mut drawing, &self.title, &self.subtitle) + 12.0;
+        let top = frame::words_above(&mut drawing, &self.title, &self.subtitle) + 12.0;
         let names: Vec<Vec<String>> = self.rows.iter().map(|row| font::wrap(&row.name, SMALL_SIZE, WIDEST)).collect();
         let widest = names.iter().flatten().map(|line| font::width(line, SMALL_SIZE)).fold(0.0, f64::max);
         let entries = self.entries();
@@ -189,7 +172,7 @@ impl Figure for DotPlot {
 
         let mut lost = 0;
         if let Some(range) = self.range() {
-            ruler::below(&mut drawing, &range.ticks(&self.axis.ticks, 9), area);
+            frame::ruler(&mut drawing, &range.ticks(self.axis.ticks.as_deref(), 9), area);
             let below = |y: &mut f64, height: &f64| {
                 *y += height;
                 Some(*y - 0.5 * height)
@@ -218,10 +201,10 @@ impl Figure for DotPlot {
         legend::draw(&mut drawing, &entries, (right + 20.0, top));
         let mut y = bottom + TICK + GAP + SMALL_SIZE + 14.0;
         drawing.text((0.5 * (left + right), y), &self.axis.label, TEXT_SIZE, INK, Align::Centre);
-        y = heading::below(&mut drawing, &self.caption, y + TEXT_SIZE + 14.0);
+        y = frame::words_below(&mut drawing, &self.caption, y + TEXT_SIZE + 14.0);
         if lost > 0 {
             let plural = if lost == 1 { "dot has" } else { "dots have" };
-            y = heading::below(&mut drawing, &format!("{lost} {plural} no place on this axis"), y);
+            y = frame::words_below(&mut drawing, &format!("{lost} {plural} no place on this axis"), y);
         }
         drawing.height = (y + 8.0).ceil();
         drawing

@@ -1,6 +1,5 @@
 //! Drawings: marks in pixels, x to the right and y down, painted in order.
 
-use super::font;
 use super::style::{Colour, Dash, HAIRLINE};
 use std::ops::Range;
 
@@ -10,80 +9,37 @@ pub type Place = (f64, f64);
 /// The part of a text that is at its position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
-    /// The left end.
     Left,
-    /// The middle.
     Centre,
-    /// The right end.
     Right,
 }
 
 /// One line of text. The middle of its capital letters is vertically at its position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Text {
-    /// Its position.
     pub at: Place,
-    /// Its words.
     pub text: String,
     /// Size in pixels per em.
     pub size: f64,
     pub colour: Colour,
-    /// The part of it that is at `at`.
     pub align: Align,
     /// Whether it reads upwards, as the title of a vertical axis does.
     pub upwards: bool,
-}
-
-impl Text {
-    /// Left, top, right and bottom of its bounding box.
-    pub fn bounds(&self) -> [f64; 4] {
-        let (width, half) = (font::width(&self.text, self.size), 0.5 * self.size);
-        let before = match self.align {
-            Align::Left => 0.0,
-            Align::Centre => 0.5 * width,
-            Align::Right => width,
-        };
-        let (x, y) = self.at;
-        if self.upwards {
-            [x - half, y + before - width, x + half, y + before]
-        } else {
-            [x - before, y - half, x - before + width, y + half]
-        }
-    }
 }
 
 /// One element to paint.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Mark {
     /// A line through points.
-    Path {
-        /// Its points.
-        places: Vec<Place>,
-        colour: Colour,
-        width: f64,
-    },
-    /// A filled polygon.
-    Area {
-        /// Its corners.
-        places: Vec<Place>,
-        colour: Colour,
-        /// From 0, invisible, to 1, opaque.
-        opacity: f64,
-    },
-    /// A filled rectangle with horizontal and vertical sides. Neighbours that share a side neither overlap nor leave a
+    Path { places: Vec<Place>, colour: Colour, width: f64 },
+    /// A filled polygon; its opacity goes from 0, invisible, to 1.
+    Area { places: Vec<Place>, colour: Colour, opacity: f64 },
+    /// A filled rectangle, by its left, top, right and bottom. Neighbours that share a side neither overlap nor leave a
     /// gap.
-    Rectangle {
-        /// Left, top, right and bottom.
-        sides: [f64; 4],
-        colour: Colour,
-    },
+    Rectangle { sides: [f64; 4], colour: Colour },
     /// A filled circle.
-    Disc {
-        /// Its centre.
-        at: Place,
-        radius: f64,
-        colour: Colour,
-    },
+    Disc { at: Place, radius: f64, colour: Colour },
+    /// A line of text.
     Text(Text),
 }
 
@@ -100,7 +56,6 @@ pub enum PartKind {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
     pub series: String,
-    /// Data or legend.
     pub kind: PartKind,
     /// The indices of its marks in the drawing.
     pub marks: Range<usize>,
@@ -109,7 +64,6 @@ pub struct Part {
 /// A drawn value, which a page shows when a reader points at it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Note {
-    /// Its position.
     pub at: Place,
     /// The name of its series; empty if there is only one.
     pub series: String,
@@ -127,9 +81,7 @@ pub struct Note {
 /// A picture of a given size.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawing {
-    /// Width in pixels.
     pub width: f64,
-    /// Height in pixels.
     pub height: f64,
     /// Its subject, for readers who cannot see it.
     pub title: String,
@@ -137,12 +89,10 @@ pub struct Drawing {
     pub marks: Vec<Mark>,
     /// Groups of marks, in order; no mark is in two parts.
     pub parts: Vec<Part>,
-    /// The values that the marks show.
     pub notes: Vec<Note>,
 }
 
 impl Drawing {
-    /// An empty drawing.
     pub fn new(title: &str, width: f64, height: f64) -> Self {
         let (marks, parts, notes) = (Vec::new(), Vec::new(), Vec::new());
         Self { width, height, title: title.to_string(), marks, parts, notes }
@@ -163,14 +113,12 @@ impl Drawing {
         }
     }
 
-    /// Adds a dashed line.
     pub fn dashed(&mut self, places: &[Place], colour: Colour, width: f64, dash: Dash) {
         for stroke in strokes(places, dash) {
             self.path(stroke, colour, width);
         }
     }
 
-    /// Adds a filled polygon.
     pub fn area(&mut self, places: Vec<Place>, colour: Colour, opacity: f64) {
         self.marks.push(Mark::Area { places, colour, opacity });
     }
@@ -188,12 +136,10 @@ impl Drawing {
         }
     }
 
-    /// Adds a filled circle.
     pub fn disc(&mut self, at: Place, radius: f64, colour: Colour) {
         self.marks.push(Mark::Disc { at, radius, colour });
     }
 
-    /// Adds a line of text.
     pub fn text(&mut self, at: Place, text: &str, size: f64, colour: Colour, align: Align) {
         self.marks.push(Mark::Text(Text { at, text: text.to_string(), size, colour, align, upwards: false }));
     }
@@ -210,7 +156,6 @@ impl Drawing {
         self.notes.push(Note { interval: note.interval.filter(is_finite), ..note });
     }
 
-    /// All texts of the drawing.
     pub fn texts(&self) -> impl Iterator<Item = &Text> {
         self.marks.iter().filter_map(|mark| if let Mark::Text(text) = mark { Some(text) } else { None })
     }

@@ -1,21 +1,19 @@
-//! The frame of a chart: positions of title, axes, legend and data, and the grid.
+//! The frame of a figure: its words, its axes with their grid, and the positions of legend and data.
 
 use super::axis::{Axis, Range, Tick};
 use super::drawing::{Align, Drawing, Place};
-use super::ruler::{GAP, TICK};
-use super::style::{INK, LEADING, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
-use super::{font, heading, ruler};
+use super::font;
+use super::style::{Colour, FAINT, GRID, HAIRLINE, INK, LEADING, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE, TITLE_SIZE};
 
-/// Width of a chart.
 pub(super) const WIDTH: f64 = 960.0;
 /// Height of the area in which data is drawn, if the legend does not need more.
 const DATA_HEIGHT: f64 = 400.0;
-/// The texts around a chart.
-pub(super) struct Words<'a> {
-    pub(super) title: &'a str,
-    pub(super) subtitle: &'a str,
-    pub(super) caption: &'a str,
-}
+/// Length of a tick.
+pub(super) const TICK: f64 = 5.0;
+/// Space between an axis and its labels.
+pub(super) const GAP: f64 = 8.0;
+/// Smallest distance between labels; nearer ones are left out.
+const APART: f64 = 6.0;
 
 /// The rectangle in which data is drawn and the ranges of its axes.
 pub(super) struct Frame {
@@ -29,15 +27,15 @@ pub(super) struct Frame {
 impl Frame {
     /// Lays out a chart and draws all of it except data and legend.
     pub(super) fn begin(
-        words: &Words<'_>,
+        [title, subtitle, caption]: [&str; 3],
         axes: (&Axis, &Axis),
         ranges: Option<(Range, Range)>,
         legend: (f64, f64),
     ) -> (Drawing, Self) {
-        let y_ticks = ranges.map_or_else(Vec::new, |(_, y)| y.ticks(&axes.1.ticks, 8));
+        let y_ticks = ranges.map_or_else(Vec::new, |(_, y)| y.ticks(axes.1.ticks.as_deref(), 8));
         let y_labels = y_ticks.iter().map(|tick| font::width(&tick.label, SMALL_SIZE)).fold(0.0, f64::max);
-        let mut drawing = Drawing::new(words.title, WIDTH, 0.0);
-        let top = heading::above(&mut drawing, words.title, words.subtitle) + 12.0;
+        let mut drawing = Drawing::new(title, WIDTH, 0.0);
+        let top = words_above(&mut drawing, title, subtitle) + 12.0;
         let frame = Self {
             left: MARGIN + TEXT_SIZE + 12.0 + y_labels + GAP + TICK,
             top,
@@ -46,12 +44,12 @@ impl Frame {
             ranges,
         };
         let below = frame.bottom + TICK + GAP + SMALL_SIZE + 14.0 + TEXT_SIZE;
-        let end = heading::below(&mut drawing, words.caption, below + 14.0);
+        let end = words_below(&mut drawing, caption, below + 14.0);
         // The last line is kept free for a remark about points that could not be drawn.
         drawing.height = (end + SMALL_SIZE * LEADING + 8.0).ceil();
         if let Some((x, _)) = ranges {
             let area = [frame.left, frame.top, frame.right, frame.bottom];
-            ruler::below(&mut drawing, &x.ticks(&axes.0.ticks, 9), area);
+            ruler(&mut drawing, &x.ticks(axes.0.ticks.as_deref(), 9), area);
             frame.vertical_axis(&mut drawing, &y_ticks);
         }
         drawing.outline([frame.left, frame.top, frame.right, frame.bottom], INK);
@@ -104,7 +102,7 @@ impl Frame {
         let mut free_below = f64::MAX;
         for tick in ticks {
             let (foot, y) = self.at(0.0, tick.place);
-            ruler::grid_line(drawing, tick, (foot, y), (self.right, y), (foot - TICK, y));
+            grid_line(drawing, tick, (foot, y), (self.right, y), (foot - TICK, y));
             let half = 0.5 * SMALL_SIZE;
             if !tick.label.is_empty() && y + half <= free_below {
                 drawing.text((foot - TICK - GAP + 3.0, y), &tick.label, SMALL_SIZE, INK, Align::Right);
@@ -118,4 +116,58 @@ impl Frame {
 pub(super) fn remark(drawing: &mut Drawing, text: &str) {
     let y = drawing.height - 8.0 - 0.5 * SMALL_SIZE * LEADING;
     drawing.text((MARGIN, y), text, SMALL_SIZE, MUTED, Align::Left);
+}
+
+/// Writes title and subtitle at the top, broken to the drawing's width, and returns the y below them.
+pub(super) fn words_above(drawing: &mut Drawing, title: &str, subtitle: &str) -> f64 {
+    let y = lines(drawing, title, MARGIN, TITLE_SIZE, INK);
+    lines(drawing, subtitle, y, TEXT_SIZE, MUTED)
+}
+
+/// Writes a caption from `y` on and returns the y below it.
+pub(super) fn words_below(drawing: &mut Drawing, caption: &str, y: f64) -> f64 {
+    lines(drawing, caption, y, SMALL_SIZE, MUTED)
+}
+
+fn lines(drawing: &mut Drawing, text: &str, mut y: f64, size: f64, colour: Colour) -> f64 {
+    for line in font::wrap(text, size, drawing.width - 2.0 * MARGIN) {
+        drawing.text((MARGIN, y + 0.5 * size * LEADING), &line, size, colour, Align::Left);
+        y += size * LEADING;
+    }
+    y
+}
+
+/// Draws the horizontal axis of an area, given by its left, top, right and bottom: grid lines through the area, ticks
+/// and labels below it.
+pub(super) fn ruler(drawing: &mut Drawing, ticks: &[Tick], area: [f64; 4]) {
+    let [left, top, right, foot] = area;
+    let mut free_from = f64::MIN;
+    for tick in ticks {
+        let x = left + tick.place * (right - left);
+        grid_line(drawing, tick, (x, foot), (x, top), (x, foot + TICK));
+        let half = 0.5 * font::width(&tick.label, SMALL_SIZE);
+        if !tick.label.is_empty() && x - half >= free_from {
+            let at = (x, foot + TICK + GAP + 0.5 * SMALL_SIZE - 2.0);
+            drawing.text(at, &tick.label, SMALL_SIZE, INK, Align::Centre);
+            free_from = x + half + APART;
+        }
+    }
+}
+
+/// Draws only the grid lines, for an area whose axis is further below.
+pub(super) fn grid(drawing: &mut Drawing, ticks: &[Tick], [left, top, right, foot]: [f64; 4]) {
+    for tick in ticks {
+        let x = left + tick.place * (right - left);
+        drawing.path(vec![(x, foot), (x, top)], if tick.label.is_empty() { FAINT } else { GRID }, HAIRLINE);
+    }
+}
+
+/// Draws a line through the data area and the tick outside it; minor ticks have a fainter line and no tick.
+fn grid_line(drawing: &mut Drawing, tick: &Tick, foot: Place, end: Place, outside: Place) {
+    if tick.label.is_empty() {
+        drawing.path(vec![foot, end], FAINT, HAIRLINE);
+    } else {
+        drawing.path(vec![foot, end], GRID, HAIRLINE);
+        drawing.path(vec![foot, outside], INK, HAIRLINE);
+    }
 }

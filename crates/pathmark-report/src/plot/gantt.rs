@@ -6,15 +6,12 @@
 //! neighbours, in the mean of their colours, so none vanishes. Of very many lanes a part is shown, and the title says
 //! which.
 
-mod lane;
-
 use super::Figure;
-use super::axis::{Axis, Range, Ticks};
+use super::axis::{Axis, Range};
 use super::drawing::{Align, Drawing};
-use super::frame::WIDTH;
-use super::ruler::{self, GAP, TICK};
+use super::frame::{self, GAP, TICK, WIDTH};
 use super::style::{INK, LEADING, LINE, MARGIN, MUTED, PAPER, SMALL_SIZE, TEXT_SIZE};
-use super::{colour_bar, font, heading, number};
+use super::{colour_bar, font, number};
 use crate::metric::heat_colour;
 use serde::Serialize;
 
@@ -38,7 +35,6 @@ const EDGED: f64 = 4.0;
 /// Width of that edge.
 const EDGE: f64 = 0.5;
 
-/// One job in a schedule.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JobBar {
     pub job: usize,
@@ -60,32 +56,17 @@ pub struct Schedule {
     pub workers: usize,
     /// Seconds from start to end.
     pub makespan_s: f64,
-    /// The jobs, in any order.
     pub jobs: Vec<JobBar>,
-}
-
-/// How values become colours.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shade {
-    /// In proportion.
-    Value,
-    /// By rank among all jobs of the chart, which shows structure if a few jobs cost far more than the rest.
-    Quantile,
 }
 
 /// The chart. Leaves out impossible jobs (without a worker, or with invalid times or values), and reports their number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GanttChart {
-    /// The subject, in one line.
     pub title: String,
-    /// Workload, machine; may be empty.
     pub subtitle: String,
-    /// Remarks below the chart; may be empty.
     pub caption: String,
     /// Meaning of the colours, with the unit.
     pub label: String,
-    /// How values become colours.
-    pub shade: Shade,
     /// The schedules, the first at the top.
     pub schedules: Vec<Schedule>,
 }
@@ -103,39 +84,26 @@ impl Schedule {
     }
 }
 
-/// The values of all jobs in ascending order, from which the colours are computed.
-struct Palette {
-    shade: Shade,
-    values: Vec<f64>,
-}
+/// The values of all jobs in ascending order. Their ranks become colours, which shows structure if a few jobs cost far
+/// more than the rest.
+struct Palette(Vec<f64>);
 
 impl Palette {
     fn of(chart: &GanttChart) -> Self {
         let jobs = chart.schedules.iter().flat_map(|schedule| schedule.jobs.iter().filter(|job| schedule.holds(job)));
         let mut values: Vec<f64> = jobs.map(|job| job.value).collect();
         values.sort_by(f64::total_cmp);
-        Self { shade: chart.shade, values }
+        Self(values)
     }
 
     /// The position of a value on the colour bar, in [0, 1].
     fn share(&self, value: f64) -> f64 {
-        let (Some(low), Some(high)) = (self.values.first(), self.values.last()) else { return 0.5 };
-        let count = |below: &dyn Fn(f64) -> bool| self.values.partition_point(|&other| below(other)) as f64;
-        match self.shade {
-            _ if low == high => 0.5,
-            Shade::Value => (value - low) / (high - low),
-            // Equal values share the middle of their ranks.
-            Shade::Quantile => {
-                0.5 * (count(&|other| other < value) + count(&|other| other <= value)) / self.values.len() as f64
-            }
+        let count = |below: &dyn Fn(f64) -> bool| self.0.partition_point(|&other| below(other)) as f64;
+        if self.0.first() == self.0.last() {
+            return 0.5;
         }
-    }
-
-    /// The value at a position of the colour bar; `None` without jobs.
-    fn value(&self, share: f64) -> Option<f64> {
-        let (low, high) = (self.values.first()?, self.values.last()?);
-        let rank = (share * (self.values.len() - 1) as f64).round() as usize;
-        Some(if self.shade == Shade::Value { low + share * (high - low) } else { self.values[rank] })
+        // Equal values share the middle of their ranks.
+        0.5 * (count(&|other| other < value) + count(&|other| other <= value)) / self.0.len() as f64
     }
 }
 
@@ -201,7 +169,7 @@ impl Figure for GanttChart {
 
     fn drawing(&self) -> Drawing {
         let mut drawing = Drawing::new(&self.title, WIDTH, 0.0);
-        let mut y = heading::above(&mut drawing, &self.title, &self.subtitle);
+        let mut y = frame::words_above(&mut drawing, &self.title, &self.subtitle);
         let first = y;
         let palette = Palette::of(self);
         let last_worker = self.schedules.iter().map(|schedule| schedule.workers).max().unwrap_or(0).saturating_sub(1);
@@ -209,11 +177,11 @@ impl Figure for GanttChart {
         let right = WIDTH - MARGIN;
         let Some((axis, seconds, range)) = self.time() else {
             drawing.text((MARGIN, y + TEXT_SIZE), "no data", TEXT_SIZE, MUTED, Align::Left);
-            y = heading::below(&mut drawing, &self.caption, y + 2.0 * TEXT_SIZE * LEADING);
+            y = frame::words_below(&mut drawing, &self.caption, y + 2.0 * TEXT_SIZE * LEADING);
             drawing.height = (y + MARGIN).ceil();
             return drawing;
         };
-        let ticks = range.ticks(&Ticks::Auto, 9);
+        let ticks = range.ticks(None, 9);
         let x = |time_s: f64| left + range.place(time_s / seconds).unwrap_or(0.0).clamp(0.0, 1.0) * (right - left);
         for (index, schedule) in self.schedules.iter().enumerate() {
             let (shown, stride) = schedule.shown();
@@ -228,9 +196,9 @@ impl Figure for GanttChart {
             let bottom = y + lane * shown.len().max(1) as f64;
             let area = [left, y, right, bottom];
             if index + 1 == self.schedules.len() {
-                ruler::below(&mut drawing, &ticks, area);
+                frame::ruler(&mut drawing, &ticks, area);
             } else {
-                ruler::grid(&mut drawing, &ticks, area);
+                frame::grid(&mut drawing, &ticks, area);
             }
             let end = x(schedule.makespan_s);
             drawing.rectangle([left, y, end, bottom], PAPER);
@@ -238,7 +206,7 @@ impl Figure for GanttChart {
             for (i, &worker) in shown.iter().enumerate() {
                 let bars = jobs(worker).map(|job| (x(job.start_s), x(job.stop_s), palette.share(job.value)));
                 let (top, rim) = (y + i as f64 * lane, if lane >= 8.0 { 1.5 } else { 0.0 });
-                for bar in lane::merged(bars.collect()) {
+                for bar in merged(bars.collect()) {
                     let colour = heat_colour(COLOURS.0 + bar.2 * (COLOURS.1 - COLOURS.0));
                     drawing.rectangle([bar.0, top + rim, bar.1, top + lane - rim], colour);
                     if bar.1 - bar.0 >= EDGED {
@@ -255,18 +223,16 @@ impl Figure for GanttChart {
         y += TICK + GAP + SMALL_SIZE + 14.0;
         drawing.text((0.5 * (left + right), y), &axis.label, TEXT_SIZE, INK, Align::Centre);
         y += TEXT_SIZE + 10.0;
-        let labels = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| palette.value(share));
-        if let [Some(a), Some(b), Some(c), Some(d), Some(e)] = labels {
-            let labels = [a, b, c, d, e].map(|value| number::short(value, 3));
-            let by_rank = if self.shade == Shade::Quantile { " (a quarter of the jobs between labels)" } else { "" };
-            let name = format!("{}{by_rank}", self.label);
-            y = colour_bar::draw(&mut drawing, (left, y), BAR, COLOURS, &name, &labels) + 10.0;
+        if let Some(last) = palette.0.len().checked_sub(1) {
+            let label = |share: f64| number::short(palette.0[(share * last as f64).round() as usize], 3);
+            let name = format!("{} (a quarter of the jobs between labels)", self.label);
+            y = colour_bar::draw(&mut drawing, (left, y), BAR, COLOURS, &name, label) + 10.0;
         }
-        y = heading::below(&mut drawing, &self.caption, y);
+        y = frame::words_below(&mut drawing, &self.caption, y);
         let held = |schedule: &Schedule| schedule.jobs.iter().filter(|job| !schedule.holds(job)).count();
         let lost: usize = self.schedules.iter().map(held).sum();
         if lost > 0 {
-            y = heading::below(&mut drawing, &format!("left out, as they can't be: {lost} of the jobs"), y);
+            y = frame::words_below(&mut drawing, &format!("left out, as they can't be: {lost} of the jobs"), y);
         }
         drawing.height = (y + 12.0).ceil();
         drawing
@@ -283,4 +249,55 @@ fn ordinal(n: usize) -> String {
         _ => "th",
     };
     format!("{n}{ending}")
+}
+
+/// The thinnest box in pixels. Half a pixel could be painted, but would double the boxes of a page, which also contains
+/// the times of all jobs.
+const THINNEST: f64 = 1.0;
+
+/// Left and right end in pixels, and the position on the colour bar.
+type Piece = (f64, f64, f64);
+
+/// Returns the boxes from left to right. Merges a box into its left neighbour if they start less than `THINNEST` apart;
+/// the colour is the mean by width.
+fn merged(mut pieces: Vec<Piece>) -> Vec<Piece> {
+    // Jobs of no width get a small weight, or the mean of several would be 0 / 0.
+    const LEAST: f64 = 1e-9;
+    pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut done: Vec<(f64, f64, f64, f64)> = Vec::new();
+    for (left, right, share) in pieces {
+        let weight = (right - left).max(LEAST);
+        match done.last_mut() {
+            Some((from, to, sum, weights)) if left - *from < THINNEST => {
+                *to = to.max(right).max(*from + THINNEST);
+                *sum += weight * share;
+                *weights += weight;
+            }
+            _ => done.push((left, right.max(left + THINNEST), weight * share, weight)),
+        }
+    }
+    done.into_iter().map(|(left, right, sum, weights)| (left, right, sum / weights)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wide_boxes_stay_and_thin_ones_never_vanish() {
+        let pieces = vec![(20.0, 30.0, 1.0), (0.0, 10.0, 0.0), (40.0, 40.0, 0.5)];
+        assert_eq!(merged(pieces), [(0.0, 10.0, 0.0), (20.0, 30.0, 1.0), (40.0, 41.0, 0.5)]);
+        assert!(merged(Vec::new()).is_empty());
+    }
+
+    #[test]
+    fn crowds_become_one_with_the_mean_of_their_colours() {
+        let crowd: Vec<Piece> =
+            (0..10_000).map(|i| (f64::from(i) * 1e-3, f64::from(i + 1) * 1e-3, f64::from(i % 2))).collect();
+        let boxes = merged(crowd);
+        assert!((9..=11).contains(&boxes.len()), "{}", boxes.len());
+        for (left, right, share) in boxes {
+            assert!(right - left >= THINNEST - 1e-9 && right - left < 2.0 * THINNEST && (share - 0.5).abs() < 0.01);
+        }
+    }
 }

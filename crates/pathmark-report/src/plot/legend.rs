@@ -20,12 +20,7 @@ const SPACING: f64 = 5.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sample {
     /// A series: its marker, and its line if it has one.
-    Series {
-        /// Colour, marker and dashes.
-        look: Look,
-        /// Whether the points are joined.
-        line: bool,
-    },
+    Series { look: Look, line: bool },
     /// A line without points.
     Line { colour: Colour, dash: Dash, width: f64 },
 }
@@ -38,13 +33,8 @@ pub struct LegendEntry {
 }
 
 impl LegendEntry {
-    /// An entry whose text is broken to fit the column.
-    pub fn new(sample: Sample, text: &str) -> Self {
-        Self::of(sample, text, text)
-    }
-
-    /// An entry for the part of the figure called `name`.
-    pub fn of(sample: Sample, name: &str, text: &str) -> Self {
+    /// An entry for the part of the figure called `name`; its text is broken to fit the column.
+    pub fn new(sample: Sample, name: &str, text: &str) -> Self {
         Self { sample, name: name.to_string(), lines: font::wrap(text, SMALL_SIZE, WIDEST) }
     }
 }
@@ -91,7 +81,8 @@ mod tests {
     #[test]
     fn column_holds_its_entries() {
         let sample = Sample::Series { look: Look::nth(0), line: true };
-        let entries = [LegendEntry::new(sample, "rayon"), LegendEntry::new(sample, &"many words ".repeat(12))];
+        let entries =
+            [LegendEntry::new(sample, "a", "rayon"), LegendEntry::new(sample, "b", &"many words ".repeat(12))];
         let (width, height) = size(&entries);
         let mut drawing = Drawing::new("t", 500.0, 500.0);
         draw(&mut drawing, &entries, (100.0, 50.0));

@@ -1,25 +1,22 @@
 //! Line charts: lines and points over two axes, such as error against samples, or speedup against threads.
 
 use super::Figure;
-use super::axis::{Axis, Range, Scale, Ticks};
+use super::axis::{Axis, Range, Scale};
 use super::drawing::{Align, Drawing, Note, PartKind, Place};
-use super::frame::{self, Frame, Words};
+use super::frame::{self, Frame};
 use super::legend::{self, LegendEntry, Sample};
 use super::marker;
 use super::number::{between, short};
-use super::overlay::{Overlay, OverlayKind, inside};
+use super::overlay::{Overlay, inside};
 use super::style::{Colour, DASHES, Dash, LINE, Look, MUTED, TEXT_SIZE};
 use std::collections::HashMap;
 
 /// Width of a fitted line: thinner than the data it belongs to.
 const FIT_LINE: f64 = 1.5;
 
-/// A point, with the intervals of its coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
-    /// Along the horizontal axis.
     pub x: f64,
-    /// Along the vertical axis.
     pub y: f64,
     /// Low and high end of x.
     pub x_interval: Option<(f64, f64)>,
@@ -61,16 +58,12 @@ pub enum Spread {
     Band,
 }
 
-/// Points that belong together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Its name in the legend.
     pub name: String,
     /// Its points, in the order in which a line joins them.
     pub points: Vec<Point>,
-    /// Colour, marker and dashes.
     pub look: Look,
-    /// How its intervals are shown.
     pub spread: Spread,
     /// Whether a line joins its points.
     pub line: bool,
@@ -116,11 +109,8 @@ pub struct LineChart {
     pub subtitle: String,
     /// Remarks below the chart; may be empty.
     pub caption: String,
-    /// Horizontal axis.
     pub x: Axis,
-    /// Vertical axis.
     pub y: Axis,
-    /// The data.
     pub series: Vec<Series>,
     /// Guides and fits.
     pub overlays: Vec<Overlay>,
@@ -140,7 +130,7 @@ impl LineChart {
         let toggled = |axis: &Axis| Axis {
             scale: if is_log { Scale::Linear } else { Scale::Log },
             // Labels that fit on a logarithmic axis may overlap on a linear one.
-            ticks: if is_log { Ticks::Auto } else { axis.ticks.clone() },
+            ticks: axis.ticks.clone().filter(|_| !is_log),
             include: axis.include.iter().copied().filter(|value| is_log || *value > 0.0).collect(),
             label: axis.label.clone(),
         };
@@ -186,20 +176,20 @@ impl LineChart {
             let sample = Sample::Series { look: series.look, line: series.line };
             let names: Vec<&str> = self.alike(first_alike, index).map(|series| series.name.as_str()).collect();
             let note = if series.points.is_empty() { " (no data)" } else { "" };
-            LegendEntry::of(sample, &series.name, &format!("{}{note}", names.join(" = ")))
+            LegendEntry::new(sample, &series.name, &format!("{}{note}", names.join(" = ")))
         });
         let overlays = self.overlays.iter().enumerate().map(|(index, overlay)| {
-            let (colour, dash) = self.stroke(index, overlay.kind);
-            LegendEntry::new(Sample::Line { colour, dash, width: FIT_LINE }, &overlay.label)
+            let (colour, dash) = self.stroke(index, overlay);
+            LegendEntry::new(Sample::Line { colour, dash, width: FIT_LINE }, &overlay.label, &overlay.label)
         });
         series.chain(overlays).collect()
     }
 
     /// Colour and dashes of overlay number `index`; neighbouring guides differ in their dashes.
-    fn stroke(&self, index: usize, kind: OverlayKind) -> (Colour, Dash) {
-        match kind {
-            OverlayKind::Guide => (MUTED, DASHES[1 + index % 2]),
-            OverlayKind::Fit(series) => (self.series.get(series).map_or(MUTED, |series| series.look.colour), DASHES[3]),
+    fn stroke(&self, index: usize, overlay: &Overlay) -> (Colour, Dash) {
+        match overlay.fitted_to {
+            None => (MUTED, DASHES[1 + index % 2]),
+            Some(series) => (self.series.get(series).map_or(MUTED, |series| series.look.colour), DASHES[3]),
         }
     }
 
@@ -281,8 +271,8 @@ impl Figure for LineChart {
         let first_alike = self.first_alike();
         let entries = self.entries(&first_alike);
         let ranges = self.ranges();
-        let words = Words { title: &self.title, subtitle: &self.subtitle, caption: &self.caption };
-        let (mut drawing, frame) = Frame::begin(&words, (&self.x, &self.y), ranges, legend::size(&entries));
+        let words = [&self.title, &self.subtitle, &self.caption].map(String::as_str);
+        let (mut drawing, frame) = Frame::begin(words, (&self.x, &self.y), ranges, legend::size(&entries));
         let mut lost = 0;
         if ranges.is_some() {
             let own = self.series.iter().enumerate().filter(|(index, _)| first_alike[*index] == *index);
@@ -290,7 +280,7 @@ impl Figure for LineChart {
                 drawing.part(PartKind::Series, &series.name, |drawing| Self::draw_band(drawing, &frame, series));
             }
             for (index, overlay) in self.overlays.iter().enumerate() {
-                let (colour, dash) = self.stroke(index, overlay.kind);
+                let (colour, dash) = self.stroke(index, overlay);
                 drawing.part(PartKind::Series, &overlay.label, |drawing| {
                     for stretch in frame.curve(|x, y| inside(&overlay.curve, x, y)) {
                         drawing.dashed(&stretch, colour, FIT_LINE, dash);

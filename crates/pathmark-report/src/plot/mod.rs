@@ -12,40 +12,37 @@ pub mod drawing;
 pub mod font;
 mod frame;
 pub mod gantt;
-mod heading;
 pub mod heat_map;
 pub mod legend;
-mod lettering;
 pub mod line_chart;
 mod marker;
 pub mod number;
 pub mod overlay;
 mod paint;
-mod ruler;
 #[cfg(test)]
 mod schedule_tests;
+pub mod stacked_bar;
 pub mod style;
 #[cfg(test)]
 mod tests;
 
-use std::io::Write;
 use std::path::Path;
 
 use crate::atomic_file;
 use crate::error::{Error, Result};
 
-pub use axis::{Axis, Scale, Ticks};
+pub use axis::{Axis, Scale};
 pub use contact_sheet::{Cell, ColourBar, Comparison, ContactSheet, Placed};
-pub use dot_plot::{Dot, DotPlot, DotRow, Group};
+pub use dot_plot::{Dot, DotPlot, DotRow};
 pub use drawing::Drawing;
-pub use gantt::{GanttChart, JobBar, Schedule, Shade};
-pub use heat_map::{HeatMap, HeatPanel, Tile};
+pub use gantt::{GanttChart, JobBar, Schedule};
+pub use heat_map::{HeatMap, Tile};
 pub use line_chart::{LineChart, Point, Series, Spread};
-pub use overlay::{Curve, Overlay, OverlayKind};
+pub use overlay::{Curve, Overlay};
+pub use stacked_bar::{Piece, StackPart, StackRow, StackedBars};
 
 /// A figure that can be drawn as vectors and as pixels.
 pub trait Figure {
-    /// The marks that it consists of.
     fn drawing(&self) -> Drawing;
 
     /// The same figure on other axes, and the name of those axes, for a page to switch to.
@@ -76,13 +73,8 @@ pub trait Figure {
     /// Writes `stem.svg` and `stem.png` into `dir`, which is created if needed.
     fn save(&self, dir: &Path, stem: &str) -> Result<()> {
         let (svg, png) = (self.svg()?, self.png()?);
-        save_bytes(dir, &format!("{stem}.svg"), svg.as_bytes())?;
-        save_bytes(dir, &format!("{stem}.png"), &png)
+        std::fs::create_dir_all(dir).map_err(|error| Error::system("creating", dir, error))?;
+        atomic_file::write(&dir.join(format!("{stem}.svg")), |file| file.write_all(svg.as_bytes()))?;
+        atomic_file::write(&dir.join(format!("{stem}.png")), |file| file.write_all(&png))
     }
-}
-
-/// Writes a file atomically: it appears whole or not at all. Creates `dir` if needed.
-fn save_bytes(dir: &Path, name: &str, bytes: &[u8]) -> Result<()> {
-    std::fs::create_dir_all(dir).map_err(|error| Error::system("creating", dir, error))?;
-    atomic_file::write(&dir.join(name), |file: &mut dyn Write| file.write_all(bytes))
 }

@@ -6,27 +6,11 @@ use super::axis::Range;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Curve {
     /// y = intercept + slope x.
-    Line {
-        /// y at x = 0.
-        intercept: f64,
-        /// Rise per unit of x.
-        slope: f64,
-    },
+    Line { intercept: f64, slope: f64 },
     /// y = scale x^exponent: straight on two logarithmic axes.
-    Power {
-        /// y at x = 1.
-        scale: f64,
-        /// Its slope on those axes.
-        exponent: f64,
-    },
-    /// y = x / (1 + contention (x - 1) + coherence x (x - 1)): speedup over workers by the Universal Scalability Law, and by Amdahl's law
-    /// if the coherence is 0. Gustafson's law is a line.
-    Scaling {
-        /// sigma, or Amdahl's serial fraction.
-        contention: f64,
-        /// kappa.
-        coherence: f64,
-    },
+    Power { scale: f64, exponent: f64 },
+    /// y = x / (1 + `serial_share` (x - 1)): speedup over workers by Amdahl's law.
+    Amdahl { serial_share: f64 },
 }
 
 impl Curve {
@@ -41,18 +25,9 @@ impl Curve {
         match *self {
             Self::Line { intercept, slope } => intercept + slope * x,
             Self::Power { scale, exponent } => scale * libm::pow(x, exponent),
-            Self::Scaling { contention, coherence } => x / (1.0 + contention * (x - 1.0) + coherence * x * (x - 1.0)),
+            Self::Amdahl { serial_share } => x / (1.0 + serial_share * (x - 1.0)),
         }
     }
-}
-
-/// The meaning of an overlay, which decides its look.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum OverlayKind {
-    /// A theoretical line to compare with: dashed grey.
-    Guide,
-    /// A line fitted to the series of this number: thin, in that series' colour.
-    Fit(usize),
 }
 
 /// A curve over the points, with its entry in the legend.
@@ -60,21 +35,19 @@ pub enum OverlayKind {
 pub struct Overlay {
     /// Its text in the legend; may have several lines.
     pub label: String,
-    /// Its formula.
     pub curve: Curve,
-    /// Guide or fit.
-    pub kind: OverlayKind,
+    /// The number of the series that it is fitted to, whose colour it has; `None` for a theoretical line, which is grey.
+    pub fitted_to: Option<usize>,
 }
 
 impl Overlay {
-    /// A theoretical line.
     pub fn guide(label: impl Into<String>, curve: Curve) -> Self {
-        Self { label: label.into(), curve, kind: OverlayKind::Guide }
+        Self { label: label.into(), curve, fitted_to: None }
     }
 
     /// A line fitted to series number `series`.
     pub fn fit(label: impl Into<String>, curve: Curve, series: usize) -> Self {
-        Self { label: label.into(), curve, kind: OverlayKind::Fit(series) }
+        Self { label: label.into(), curve, fitted_to: Some(series) }
     }
 }
 
@@ -146,9 +119,8 @@ mod tests {
         let half = Curve::power_through((16.0, 0.25), -0.5).unwrap();
         assert!((half.at(64.0) - 0.125).abs() < 1e-12);
         assert!((Curve::Line { intercept: 1.0, slope: 2.0 }.at(3.0) - 7.0).abs() < 1e-12);
-        // Amdahl: 1 / (0.25 + 0.75 / 3) = 2. With a coherence of 1/6 the divisor grows by 1, from 1.5 to 2.5.
-        assert!((Curve::Scaling { contention: 0.25, coherence: 0.0 }.at(3.0) - 2.0).abs() < 1e-12);
-        assert!((Curve::Scaling { contention: 0.25, coherence: 1.0 / 6.0 }.at(3.0) - 1.2).abs() < 1e-12);
+        // 1 / (0.25 + 0.75 / 3) = 2.
+        assert!((Curve::Amdahl { serial_share: 0.25 }.at(3.0) - 2.0).abs() < 1e-12);
     }
 
     #[test]

@@ -49,19 +49,13 @@ pub const HAIRLINE: f64 = 1.0;
 /// The shape at each point of a series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Marker {
-    /// A filled circle.
     Disc,
-    /// A filled square.
     Square,
-    /// A filled triangle, point up.
     Triangle,
-    /// A filled square standing on a corner.
     Diamond,
     /// A filled triangle, point down.
     Nabla,
-    /// An upright cross.
     Plus,
-    /// A diagonal cross.
     Cross,
     /// A circle with an empty middle.
     Ring,
@@ -88,11 +82,8 @@ pub const DASHES: [Dash; 4] = [&[], &[8.0, 4.0], &[2.0, 3.0], &[10.0, 3.0, 2.0, 
 /// The properties that distinguish a series from the others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Look {
-    /// Colour of line, markers and error bars.
     pub colour: Colour,
-    /// Shape of the markers.
     pub marker: Marker,
-    /// Dashes of the line.
     pub dash: Dash,
 }
 

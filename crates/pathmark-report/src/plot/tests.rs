@@ -1,10 +1,10 @@
 //! Tests of whole figures: nothing is clipped, overlaps or fails, and the bytes are the same each time.
 
-use super::drawing::{Mark, Text};
+use super::drawing::{Align, Mark, Text};
 use super::style::{GRID, Look};
 use super::{
     Axis, Cell, ColourBar, ContactSheet, Curve, Drawing, Figure, LineChart, Overlay, Point, Scale, Series, Spread,
-    paint,
+    font, paint,
 };
 
 const THREADS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
@@ -32,6 +32,24 @@ fn chart_of(points: Vec<Point>, scale: Scale) -> LineChart {
 
 pub(super) fn says(drawing: &Drawing, what: &str) -> bool {
     drawing.texts().any(|text| text.text.contains(what))
+}
+
+impl Text {
+    /// Left, top, right and bottom of its bounding box.
+    pub fn bounds(&self) -> [f64; 4] {
+        let (width, half) = (font::width(&self.text, self.size), 0.5 * self.size);
+        let before = match self.align {
+            Align::Left => 0.0,
+            Align::Centre => 0.5 * width,
+            Align::Right => width,
+        };
+        let (x, y) = self.at;
+        if self.upwards {
+            [x - half, y + before - width, x + half, y + before]
+        } else {
+            [x - before, y - half, x - before + width, y + half]
+        }
+    }
 }
 
 /// Asserts that every text is inside the drawing, and that no two overlap.

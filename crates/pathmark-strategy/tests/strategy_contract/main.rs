@@ -18,12 +18,12 @@ fn verify(entry: &Entry, parameter: Option<&str>) {
     contract.verify(entry).unwrap_or_else(|violations| panic!("{}: {violations:#?}", entry.name));
 }
 
-/// Runs four trials at a time, because a trial mostly waits. With more, waiting for each other could use up the
+/// Runs eight trials at a time, because a trial mostly waits. With many more, waiting for each other could use up the
 /// patience.
 fn verify_all(trials: &[(&Entry, Option<&str>)]) {
     let next = Mutex::new(trials.iter());
     thread::scope(|scope| {
-        for _ in 0..4 {
+        for _ in 0..8 {
             scope.spawn(|| {
                 while let Some((entry, parameter)) = { next.lock().unwrap().next() } {
                     verify(entry, *parameter);

@@ -1,18 +1,13 @@
 //! `pathmark image compare IMAGE REFERENCE [HALF]`: the error of an image against another, or against two references without
 //! their noise.
 
-use super::picture;
+use super::{is_film, read_picture};
 use crate::analysis::Interval;
 use crate::analysis::mean::t_interval;
-use crate::console::output::{counted, number, print, print_json};
-use crate::error::{Error, InputError, Result};
-use crate::files::Files;
 use crate::film_file::FilmKey;
 use crate::image_io::{self, Image};
 use crate::metric::{METRICS, cross_products, cross_rel_mse, flip_map, heatmap, root};
-use clap::Args;
-use serde_json::Value;
-use std::path::PathBuf;
+use crate::verbs::prelude::*;
 
 /// Confidence of the cross form's interval.
 const LEVEL: f64 = 0.95;
@@ -53,7 +48,7 @@ fn shared_samples(inputs: &[(&PathBuf, Option<FilmKey>)]) -> Result<Option<Strin
                 continue;
             }
             let problem = "is the seed of both images, so they share samples and look more alike than they are";
-            if picture::is_film(path) && picture::is_film(other_path) {
+            if is_film(path) && is_film(other_path) {
                 return Err(InputError::new("seed", key.seed.to_string(), problem)
                     .allowed("two different seeds")
                     .into());
@@ -64,7 +59,6 @@ fn shared_samples(inputs: &[(&PathBuf, Option<FilmKey>)]) -> Result<Option<Strin
     Ok(remark)
 }
 
-/// A line of the output.
 struct Line {
     name: &'static str,
     value: f64,
@@ -92,7 +86,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     }
     let (mut read, mut shown) = (Vec::new(), Vec::new());
     for path in inputs.into_iter().flatten() {
-        let (image, film) = picture::read(path)?;
+        let (image, film) = read_picture(path)?;
         shown.push((path, film.map(|film| film.key)));
         read.push(image);
     }

@@ -1,15 +1,8 @@
 //! `pathmark image reference SCENE`: the two half-references against which images are measured.
 
-use crate::console::Console;
-use crate::console::output::print;
-use crate::error::Result;
-use crate::experiment::{Progress as _, Reference, ReferenceError, check_until, refine_reference, render_reference};
-use crate::files::{Files, create_folder};
-use crate::lab::Lab;
+use crate::experiment::{Reference, ReferenceError, check_until, refine_reference, render_reference};
 use crate::measure::parse_size;
-use clap::Args;
-use std::path::PathBuf;
-use std::sync::Arc;
+use crate::verbs::prelude::*;
 
 /// `pathmark image reference cornell --spp 4096 --size 256x192`
 #[derive(Args)]

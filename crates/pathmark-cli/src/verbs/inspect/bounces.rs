@@ -1,20 +1,11 @@
 //! `pathmark inspect bounces SCENE`: the light of an image by number of bounces, and the lengths of its paths.
 
 use crate::atomic_file;
-use crate::console::Console;
-use crate::console::output::{number, print, print_json};
-use crate::error::Result;
-use crate::experiment::Progress;
-use crate::files::Files;
 use crate::kernel::{Inspector, LightByBounce, Spec};
-use crate::lab::Lab;
 use crate::plot::number::short;
+use crate::verbs::prelude::*;
 use crate::verbs::setting_options::{Samples, no_paths};
-use clap::Args;
-use serde_json::{Value, json};
 use std::fmt::Write;
-use std::path::PathBuf;
-use std::sync::Arc;
 
 /// `pathmark inspect bounces cornell --size 128x96 --spp 16`
 #[derive(Args)]
@@ -36,9 +27,7 @@ const SHOWN: usize = 16;
 const REPORTED: usize = 6;
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
-    let settings = arguments.samples.settings(lab)?;
-    let setup = lab.prepare(settings)?;
-    setup.remarks().iter().for_each(|remark| console.note(remark));
+    let setup = arguments.samples.prepare(lab, console)?;
     let Some((scene, choice)) = setup.scene() else { return Err(no_paths(&arguments.samples.scene)) };
     let spec = &setup.settings().spec;
     let mut files = Files::default();

@@ -1,16 +1,10 @@
 //! `pathmark inspect jobs FILE`: one run, job by job.
 
 use crate::atomic_file;
-use crate::console::Console;
-use crate::console::output::{counted, print};
-use crate::error::{Error, InputError, Result};
-use crate::experiment::Progress as _;
-use crate::files::Files;
 use crate::measure::{TraceFile, chrome_trace};
 use crate::plot::Figure;
 use crate::report::timeline;
-use clap::Args;
-use std::path::{Path, PathBuf};
+use crate::verbs::prelude::*;
 
 /// `pathmark inspect jobs run.csv -o run.svg`, after `pathmark render cornell --trace run.csv`
 #[derive(Args)]

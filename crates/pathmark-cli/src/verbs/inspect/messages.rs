@@ -1,10 +1,7 @@
 //! `mpiexec -n 2 pathmark inspect messages`: the costs of MPI messages on this machine.
 
 use crate::cluster::{Cluster, MessageCost, MessageCosts};
-use crate::console::output::{print, print_json};
-use crate::error::Result;
-use clap::Args;
-use std::path::PathBuf;
+use crate::verbs::prelude::*;
 
 /// `mpiexec -n 2 pathmark inspect messages`
 #[derive(Args)]

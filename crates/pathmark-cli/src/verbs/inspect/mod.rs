@@ -6,11 +6,7 @@ mod messages;
 pub(super) mod path;
 mod rays;
 
-use crate::console::Console;
-use crate::error::Result;
-use crate::lab::Lab;
-use clap::Subcommand;
-use std::sync::Arc;
+use crate::verbs::prelude::*;
 
 #[derive(Subcommand)]
 pub(crate) enum Inspect {

@@ -1,19 +1,15 @@
 //! `pathmark inspect path SCENE`: one sample's path, bounce by bounce.
 
-use crate::console::output::{self, print, print_json};
-use crate::error::{Error, InputError, Result};
+use crate::console::output::{self, aligned};
 use crate::kernel::{self, Event, Inspector, PathLog, RenderOptions, Spec};
-use crate::lab::Lab;
 use crate::math::{Rgb, Vec3};
-use crate::measure::{InvalidSample, LARGEST_SPP, SETTINGS, Setting, Settings};
+use crate::measure::{InvalidSample, LARGEST_SPP, SETTINGS, Setting};
 use crate::plot::number;
 use crate::scene::Scene;
 use crate::shell;
 use crate::simd::Precision;
+use crate::verbs::prelude::*;
 use crate::verbs::setting_options::{What, no_paths};
-use clap::Args;
-use serde_json::{Value, json};
-use std::sync::Arc;
 
 /// `pathmark inspect path cornell --pixel 300,250 --sample 3`
 #[derive(Args)]
@@ -72,7 +68,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     let Spec { width, height, seed, estimator, .. } = spec;
     let what = path.map_or_else(
         || format!("{} is rendered by SIMD lanes only, which cannot report the events of a path.", precision.name()),
-        |(log, _)| table(&lines(scene, &log.events)),
+        |(log, _)| aligned(HEADS.map(String::from).to_vec(), lines(scene, &log.events), false),
     );
     let [r, g, b] = radiance;
     print(&format!(
@@ -155,22 +151,21 @@ fn object(scene: &Scene, event: &Event) -> Value {
     }
 }
 
-/// A line of the table: bounces, what, distance, point, throughput, light.
-type Line = [String; 6];
+/// The heads of the table.
+const HEADS: [&str; 6] = ["bounces", "what", "distance", "point", "throughput", "light added"];
 
 fn triple(values: [f64; 3]) -> String {
     values.map(|value| format!("{:>10}", number::short(value, 5))).join(" ")
 }
 
-fn lines(scene: &Scene, events: &[Event]) -> Vec<Line> {
-    let mut lines: Vec<Line> = Vec::new();
+fn lines(scene: &Scene, events: &[Event]) -> Vec<Vec<String>> {
+    let mut lines: Vec<Vec<String>> = Vec::new();
     let mut why = "no further ray";
     let mut fresh_surface = false;
     // The first ray of the path comes before any other camera ray.
     let mut has_ended = false;
-    let word = |bounces: u16, text: String| -> Line {
-        [bounces.to_string(), text, String::new(), String::new(), String::new(), String::new()]
-    };
+    let line = |bounces: u16, cells: [String; 5]| [bounces.to_string()].into_iter().chain(cells).collect::<Vec<_>>();
+    let word = |bounces, text| line(bounces, [text, String::new(), String::new(), String::new(), String::new()]);
     for event in events {
         let stands_on_surface = std::mem::take(&mut fresh_surface);
         match *event {
@@ -178,33 +173,26 @@ fn lines(scene: &Scene, events: &[Event]) -> Vec<Line> {
                 let what = format!("{}, primitive {}, {}", name(scene, hit.object), hit.primitive, side(hit.inside));
                 let point = triple([hit.point.x, hit.point.y, hit.point.z]);
                 let (distance, throughput) = (number::short(hit.t, 6), triple(throughput.channels()));
-                lines.push([bounces.to_string(), what, distance, point, throughput, String::new()]);
+                lines.push(line(bounces, [what, distance, point, throughput, String::new()]));
                 fresh_surface = true;
             }
             Event::Fog { bounces, point, distance, throughput, .. } => {
                 let (point, throughput) = (triple([point.x, point.y, point.z]), triple(throughput.channels()));
                 let distance = number::short(distance, 6);
-                lines.push([
-                    bounces.to_string(),
-                    "scattered by fog".into(),
-                    distance,
-                    point,
-                    throughput,
-                    String::new(),
-                ]);
+                lines.push(line(bounces, ["scattered by fog".into(), distance, point, throughput, String::new()]));
             }
             Event::Light { radiance, .. } if radiance.is_black() => {}
             // The light that a surface emits is logged right after the hit.
             Event::Light { radiance, .. } if stands_on_surface => {
-                if let Some(line) = lines.last_mut() {
-                    line[5] = triple(radiance.channels());
+                if let Some(own) = lines.last_mut() {
+                    own[5] = triple(radiance.channels());
                 }
             }
             Event::Light { bounces, radiance } => {
                 let is_seen_besides = has_ended && bounces == 0;
-                let mut line = word(bounces, if is_seen_besides { "other camera rays" } else { "light" }.into());
-                line[5] = triple(radiance.channels());
-                lines.push(line);
+                let mut own = word(bounces, if is_seen_besides { "other camera rays" } else { "light" }.into());
+                own[5] = triple(radiance.channels());
+                lines.push(own);
             }
             Event::Split { bounces } => lines.push(word(bounces, "splits: the other branch comes later".into())),
             Event::Escaped => why = "hit nothing",
@@ -218,18 +206,6 @@ fn lines(scene: &Scene, events: &[Event]) -> Vec<Line> {
         }
     }
     lines
-}
-
-fn table(lines: &[Line]) -> String {
-    let heads = ["bounces", "what", "distance", "point", "throughput", "light added"].map(String::from);
-    let all = || std::iter::once(&heads).chain(lines);
-    let widths: [usize; 6] =
-        std::array::from_fn(|column| all().map(|line| line[column].chars().count()).max().unwrap_or(0));
-    let row = |line: &Line| {
-        let cells: Vec<String> = line.iter().zip(widths).map(|(cell, width)| format!("{cell:width$}")).collect();
-        cells.join("  ").trim_end().to_string()
-    };
-    all().map(row).collect::<Vec<_>>().join("\n")
 }
 
 #[cfg(test)]

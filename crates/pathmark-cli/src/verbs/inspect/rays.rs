@@ -2,24 +2,15 @@
 
 use crate::analysis::quantile::{median, median_interval};
 use crate::atomic_file;
-use crate::console::Console;
-use crate::console::output::{number, print, print_json};
-use crate::error::{InputError, Result};
 use crate::experiment::LARGEST_REPETITIONS;
-use crate::experiment::Progress;
-use crate::files::Files;
 use crate::kernel::{FoundRays, RaySearch, Start, path_rays};
-use crate::lab::Lab;
 use crate::math::Vec3;
-use crate::measure::{Settings, Setup};
 use crate::plot::number::short;
 use crate::scene::Scene;
+use crate::verbs::prelude::*;
 use crate::verbs::setting_options::{Samples, no_paths};
-use clap::{Args, value_parser};
-use serde_json::json;
+use clap::value_parser;
 use std::io::{self, Write};
-use std::path::PathBuf;
-use std::sync::Arc;
 use std::time::Instant;
 
 /// `pathmark inspect rays bumpy-ball:20000 --precision f32`
@@ -42,9 +33,7 @@ pub(crate) struct Arguments {
 const LEVEL: f64 = 0.95;
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
-    let settings = arguments.samples.settings(lab)?;
-    let setup = lab.prepare(settings)?;
-    setup.remarks().iter().for_each(|remark| console.note(remark));
+    let setup = arguments.samples.prepare(lab, console)?;
     let Some((scene, choice)) = setup.scene() else { return Err(no_paths(&arguments.samples.scene)) };
     check_paths(&setup)?;
     let mut files = Files::default();

@@ -60,7 +60,7 @@ fn setup(change: impl Fn(&mut Settings)) -> Setup {
 }
 
 /// For each axis, a value that differs from the setups above.
-const OTHER_VALUES: [(&str, &str); 24] = [
+const OTHER_VALUES: [(&str, &str); 26] = [
     ("scene", "sky"),
     ("size", "9x6"),
     ("estimator", "mis"),
@@ -85,6 +85,8 @@ const OTHER_VALUES: [(&str, &str); 24] = [
     ("rank-rule", "guided"),
     ("ranks", "3"),
     ("test-knob", "7"),
+    ("pin", "compact"),
+    ("counters", "true"),
 ];
 
 #[test]
