@@ -3,22 +3,15 @@
 //! All pools take turns, in alternating order, within a process; a ratio compares two turns of one round, and its interval
 //! follows from several processes, each of which is this program started again.
 
+use super::prelude::*;
 use crate::analysis::adjacent_pairs::{by_process, paired_ratio};
 use crate::analysis::quantile::median;
 use crate::analysis::{Estimate, Interval};
-use crate::console::Console;
-use crate::console::output::{counted, print, print_json};
-use crate::error::{Error, InputError, Result};
-use crate::experiment::{MACHINE, Progress as _, RunFile, read_run_file};
-use crate::files::{Files, create_folder};
-use crate::lab::Lab;
+use crate::experiment::{MACHINE, RunFile, read_run_file};
 use crate::measure::{BurstRow, Bursts, Spin, available_threads, keeps_threads, run_bursts};
-use clap::{Args, value_parser};
-use serde::Serialize;
+use clap::value_parser;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
 use std::process::{Command, Stdio};
-use std::sync::Arc;
 use std::time::Duration;
 
 /// Confidence of the intervals.

@@ -89,11 +89,11 @@ fn lines<'a>(results: &'a Results, options: &'a Options) -> Result<Vec<Line<'a>>
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let options: Options = options(results, "mistakes")?;
+    let options: Options = options(&results.definition, "mistakes")?;
     let lines = lines(results, &options)?;
     let time = |line: &Line<'_>| line.time.map(|time| time.estimate());
     // More threads than processors take turns, so their times tell little of an error.
-    let times = lines.iter().filter(|line| line.threads <= results.processors() && line.time.is_some());
+    let times = lines.iter().filter(|line| line.threads <= results.run.machine.processors && line.time.is_some());
     let times: Vec<&Line<'_>> = times.collect();
     let errors: Vec<&Line<'_>> = lines.iter().filter(|line| line.error.is_some()).collect();
     let mut blocks = Vec::new();
