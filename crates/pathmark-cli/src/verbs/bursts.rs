@@ -153,11 +153,11 @@ fn turns(
         for gap in &arguments.gap {
             let Arguments { regions, job, .. } = *arguments;
             let bursts = Bursts { threads, regions, jobs: arguments.jobs as usize, job, gap: *gap };
-            let mut order: Vec<&String> = strategies.iter().collect();
+            let mut names: Vec<&String> = strategies.iter().collect();
             if (process + round) % 2 == 1 {
-                order.reverse();
+                names.reverse();
             }
-            for (place, name) in (0..).zip(order) {
+            for (place, name) in (0..).zip(names) {
                 rows.push(BurstRow { process, round, place, ..run_bursts(lab, name, work, bursts)? });
             }
         }
