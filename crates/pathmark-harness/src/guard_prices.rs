@@ -31,7 +31,7 @@ pub struct PriceRow {
     /// Median nanoseconds per operation of the program's method; empty if it could not be timed.
     pub ns_with: Option<f64>,
     pub ns_without: Option<f64>,
-    /// Time with the guard divided by time without: median over paired rounds, with its 95 % interval.
+    /// Time with the guard divided by time without, in adjacent rounds, with its 95 % interval over processes.
     pub time_ratio: Option<f64>,
     pub time_ratio_low: Option<f64>,
     pub time_ratio_high: Option<f64>,

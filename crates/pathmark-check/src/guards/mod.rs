@@ -17,7 +17,9 @@ mod sums;
 mod visible_normals;
 mod watertight;
 
+use crate::analysis::adjacent_pairs::paired_ratio;
 use crate::analysis::mean::t_interval;
+use crate::analysis::quantile::median;
 use crate::guard_prices::{LEVEL, PriceRow};
 use crate::measure::{Interleaved, interleaved};
 use serde::{Deserialize, Serialize};
@@ -38,8 +40,9 @@ pub static GUARDS: &[Guard] = &[
     fixed_order::GUARD,
 ];
 
-/// Rounds in which both variants are timed.
-const ROUNDS: usize = 31;
+/// Rounds in which a process times both variants.
+const ROUNDS: usize = 9;
+
 /// A method of the program and a simpler alternative.
 pub struct Guard {
     /// Short name of the guarded property.
@@ -71,15 +74,19 @@ macro_rules! variant {
 use variant;
 
 impl Guard {
-    /// Measures errors and times.
-    pub fn price(&self) -> PriceRow {
+    /// The times of both methods in this process.
+    pub fn times(&self) -> Option<Interleaved> {
         let mut with = |count: u64| _ = black_box((self.with.work)(black_box(count)));
         let mut without = |count: u64| _ = black_box((self.without.work)(black_box(count)));
-        let times = interleaved(ROUNDS, &mut with, &mut without, LEVEL);
-        self.row((self.with.error)(), (self.without.error)(), times)
+        interleaved(ROUNDS, &mut with, &mut without)
     }
 
-    fn row(&self, with: Measured, without: Measured, times: Option<Interleaved>) -> PriceRow {
+    /// Measures the errors, and adds the times of several processes.
+    pub fn price(&self, processes: &[Interleaved]) -> PriceRow {
+        let (with, without) = ((self.with.error)(), (self.without.error)());
+        let ns = |of: fn(&Interleaved) -> f64| median(&processes.iter().map(of).collect::<Vec<_>>());
+        let pairs: Vec<Vec<f64>> = processes.iter().map(|own| own.ratios.clone()).collect();
+        let ratio = paired_ratio(&pairs, LEVEL).map(|found| found.ratio);
         PriceRow {
             guard: self.name.to_string(),
             error: self.error.to_string(),
@@ -92,11 +99,11 @@ impl Guard {
             error_without_low: without.low,
             error_without_high: without.high,
             operation: self.operation.to_string(),
-            ns_with: times.map(|times| times.first_ns),
-            ns_without: times.map(|times| times.second_ns),
-            time_ratio: times.map(|times| times.ratio.value),
-            time_ratio_low: times.map(|times| times.ratio.interval.low),
-            time_ratio_high: times.map(|times| times.ratio.interval.high),
+            ns_with: ns(|own| own.first_ns),
+            ns_without: ns(|own| own.second_ns),
+            time_ratio: ratio.map(|ratio| ratio.value),
+            time_ratio_low: ratio.map(|ratio| ratio.interval.low),
+            time_ratio_high: ratio.map(|ratio| ratio.interval.high),
         }
     }
 }

@@ -130,8 +130,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     let each = if is_comparison { unbiased(lab, &asked).collect() } else { vec![asked] };
     lab.prepare(each[0].clone())?.remarks().iter().for_each(|remark| console.note(remark));
     let (mut priced, mut texts, mut doubts) = (Vec::new(), Vec::new(), TimingConcerns::default());
-    for settings in &each {
-        let (piloted, rows) = price(lab, arguments, settings, console)?;
+    let pilot = Pilot { spp: arguments.pilot_spp, seeds: arguments.pilot_seeds };
+    for (settings, piloted) in each.iter().zip(pilot.run_side_by_side(lab, &each, LEVEL, console)?) {
+        let rows = price(lab, arguments, settings, &piloted, console)?;
         texts.push(table(settings, arguments, &piloted, &rows));
         doubts.merge(&piloted.doubts);
         priced.extend(rows);
@@ -157,14 +158,16 @@ fn unbiased<'a>(lab: &'a Lab, settings: &'a Settings) -> impl Iterator<Item = Se
     names.map(|estimator| Settings { spec: Spec { estimator, ..settings.spec.clone() }, ..settings.clone() })
 }
 
-/// Runs the pilot of an estimator, and prices each goal.
-fn price(lab: &Lab, arguments: &Arguments, settings: &Settings, console: &Console) -> Result<(Piloted, Vec<Row>)> {
+/// Prices each goal.
+fn price(
+    lab: &Lab,
+    arguments: &Arguments,
+    settings: &Settings,
+    piloted: &Piloted,
+    console: &Console,
+) -> Result<Vec<Row>> {
     let counts = Counts::of(settings, lab.prepare(settings.clone())?.fewest_spp());
-    let pilot = Pilot { spp: arguments.pilot_spp, seeds: arguments.pilot_seeds };
-    let piloted = pilot.run(lab, settings, LEVEL, console)?;
-    let rows = arguments.rmse.iter().map(|goal| row(lab, arguments, settings, &piloted, *goal, counts, console));
-    let rows = rows.collect::<Result<Vec<_>>>()?;
-    Ok((piloted, rows))
+    arguments.rmse.iter().map(|goal| row(lab, arguments, settings, piloted, *goal, counts, console)).collect()
 }
 
 /// Puts the estimators of a goal into groups: two share one if their intervals overlap.

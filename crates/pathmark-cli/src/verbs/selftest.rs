@@ -1,14 +1,18 @@
 //! `pathmark selftest`: the hard cases on this machine, and the costs of guarding against them.
 
 use super::prelude::*;
-use crate::check::guards::GUARDS;
+use crate::check::guards::{GUARDS, Guard};
 use crate::check::{self, Case, Effort, Outcome, SECTIONS, case_row};
 use crate::console::output::lock_folder;
 use crate::experiment::{MACHINE, RunFile, read_run_file};
 use crate::guard_prices::{FILE, FOLDER, PriceRow, read_prices, write_prices};
 use crate::lock::{Lock, Sharing};
-use crate::measure::available_threads;
+use crate::measure::{Interleaved, available_threads};
 use crate::{cases_file, report};
+use std::process::Command;
+
+/// Processes that time the guards.
+const PROCESSES: u64 = 4;
 
 /// `pathmark selftest --thorough`
 #[derive(Args)]
@@ -25,6 +29,9 @@ pub(crate) struct Arguments {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// Time the guards once: one process of their price list
+    #[arg(long, hide = true)]
+    guard_times: bool,
 }
 
 #[derive(Serialize)]
@@ -37,6 +44,9 @@ struct Row<'a> {
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
+    if arguments.guard_times {
+        return print_json(&GUARDS.iter().map(Guard::times).collect::<Vec<_>>());
+    }
     let chosen = chosen(&arguments.cases)?;
     let _lock = arguments.out.as_ref().map(|out| folder_for_results(out)).transpose()?;
     let effort = if arguments.thorough { Effort::Thorough } else { Effort::Quick };
@@ -177,16 +187,21 @@ pub(super) fn has_prices(out: &Path) -> bool {
     out.join(FOLDER).join(FILE).is_file()
 }
 
-/// Measures all guards, one after the other.
+/// Measures all guards in several processes: a process has one memory layout, which may favour one of two methods.
 pub(super) fn price_guards(console: &Console) -> Vec<PriceRow> {
-    console.begin("guards", GUARDS.len() as u64);
-    let mut rows = Vec::new();
-    for guard in GUARDS {
-        rows.push(guard.price());
-        console.advance(rows.len() as u64);
+    console.begin("guards", PROCESSES);
+    let mut processes: Vec<Vec<Interleaved>> = vec![Vec::new(); GUARDS.len()];
+    for done in 1..=PROCESSES {
+        let own =
+            std::env::current_exe().and_then(|own| Command::new(own).args(["selftest", "--guard-times"]).output());
+        let times = own.ok().and_then(|output| serde_json::from_slice::<Vec<Option<Interleaved>>>(&output.stdout).ok());
+        for (all, own) in processes.iter_mut().zip(times.into_iter().flatten()) {
+            all.extend(own);
+        }
+        console.advance(done);
     }
     console.end();
-    rows
+    GUARDS.iter().zip(&processes).map(|(guard, processes)| guard.price(processes)).collect()
 }
 
 /// Adds the price list to the files that a command will write. Refuses a folder that has one: measurements are never

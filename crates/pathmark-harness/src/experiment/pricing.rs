@@ -51,6 +51,28 @@ fn with_seed(settings: &Settings, spp: u32, seed: u64) -> Settings {
 impl Pilot {
     /// Renders the pilot. Intervals have the confidence `level`.
     pub fn run(&self, lab: &Lab, settings: &Settings, level: f64, progress: &dyn Progress) -> Result<Piloted> {
+        let mut course = self.begin(lab, settings, 1)?;
+        self.render(lab, std::slice::from_mut(&mut course), progress)?;
+        course.end(level)
+    }
+
+    /// Renders the pilots of several settings side by side: each seed by all of them, in alternating order, so that drift
+    /// of the machine's speed affects them equally.
+    pub fn run_side_by_side(
+        &self,
+        lab: &Lab,
+        each: &[Settings],
+        level: f64,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Piloted>> {
+        let courses = each.iter().map(|settings| self.begin(lab, settings, each.len()));
+        let mut courses = courses.collect::<Result<Vec<_>>>()?;
+        self.render(lab, &mut courses, progress)?;
+        courses.into_iter().map(|course| course.end(level)).collect()
+    }
+
+    /// Checks the settings, one of `many`.
+    fn begin(&self, lab: &Lab, settings: &Settings, many: usize) -> Result<Course> {
         let law = law_of(&settings.spec.sampler);
         let fewest = lab.prepare(with_seed(settings, self.spp, PILOT_SEEDS))?.fewest_spp();
         if !self.spp.is_multiple_of(fewest) {
@@ -59,7 +81,8 @@ impl Pilot {
         }
         let count = if law == Law::Independent { 1 } else { POINTS };
         let pixels = u64::from(settings.spec.width) * u64::from(settings.spec.height);
-        let bytes = pixels * u64::from(self.seeds) * u64::from(count) * size_of::<[f64; 3]>() as u64;
+        let images = u64::from(self.seeds) * u64::from(count) * many as u64;
+        let bytes = pixels * images * size_of::<[f64; 3]>() as u64;
         if bytes > LARGEST_BYTES {
             let problem = format!("keeps {} GiB of images in memory", bytes >> 30);
             let error = InputError::new("pilot-seeds", self.seeds.to_string(), problem);
@@ -69,28 +92,68 @@ impl Pilot {
         let halved = (0..count).map(|times| self.spp >> times).take_while(|spp| spp.is_multiple_of(fewest) && *spp > 0);
         let mut points: Vec<u32> = halved.collect();
         points.reverse();
-
-        let mut images: Vec<Vec<Vec<f64>>> = vec![Vec::new(); points.len()];
-        let (mut per_spp, mut doubts) = (Vec::new(), TimingConcerns::default());
-        progress.begin("pilot", u64::from(self.seeds));
         // The first run of a process is slower than the rest.
         lab.prepare(with_seed(settings, fewest, PILOT_SEEDS))?.run(None)?;
+        let images = vec![Vec::new(); points.len()];
+        Ok(Course {
+            settings: settings.clone(),
+            law,
+            points,
+            images,
+            per_spp: Vec::new(),
+            doubts: TimingConcerns::default(),
+        })
+    }
+
+    fn render(&self, lab: &Lab, courses: &mut [Course], progress: &dyn Progress) -> Result<()> {
+        progress.begin("pilot", u64::from(self.seeds) * courses.len() as u64);
+        let mut done = 0;
         for seed in 0..self.seeds {
-            let setup = lab.prepare(with_seed(settings, self.spp, PILOT_SEEDS + u64::from(seed)))?;
-            let mut rounds = Rounds::new(setup)?;
-            let (mut seconds, mut samples) = (0.0, 0);
-            for (&spp, images) in points.iter().zip(&mut images) {
-                let times = rounds.extend_to(spp, None)?;
-                seconds += times.makespan_s;
-                samples += times.paths;
-                images.push(rounds.film().image().pixels.into_flattened());
+            let mut order: Vec<&mut Course> = courses.iter_mut().collect();
+            if seed % 2 == 1 {
+                order.reverse();
             }
-            per_spp.push(seconds * pixels as f64 / samples as f64);
-            let warnings: Vec<String> = rounds.outcome().warnings.iter().map(ToString::to_string).collect();
-            doubts.add(&warnings.join(";"));
-            progress.advance(u64::from(seed) + 1);
+            for course in order {
+                course.render(lab, self.spp, PILOT_SEEDS + u64::from(seed))?;
+                done += 1;
+                progress.advance(done);
+            }
         }
         progress.end();
+        Ok(())
+    }
+}
+
+/// The pilot of one renderer, and what its seeds have shown so far.
+struct Course {
+    settings: Settings,
+    law: Law,
+    points: Vec<u32>,
+    /// The images of each point, seed by seed.
+    images: Vec<Vec<Vec<f64>>>,
+    per_spp: Vec<f64>,
+    doubts: TimingConcerns,
+}
+
+impl Course {
+    fn render(&mut self, lab: &Lab, spp: u32, seed: u64) -> Result<()> {
+        let pixels = u64::from(self.settings.spec.width) * u64::from(self.settings.spec.height);
+        let mut rounds = Rounds::new(lab.prepare(with_seed(&self.settings, spp, seed))?)?;
+        let (mut seconds, mut samples) = (0.0, 0);
+        for (&spp, images) in self.points.iter().zip(&mut self.images) {
+            let times = rounds.extend_to(spp, None)?;
+            seconds += times.makespan_s;
+            samples += times.paths;
+            images.push(rounds.film().image().pixels.into_flattened());
+        }
+        self.per_spp.push(seconds * pixels as f64 / samples as f64);
+        let warnings: Vec<String> = rounds.outcome().warnings.iter().map(ToString::to_string).collect();
+        self.doubts.add(&warnings.join(";"));
+        Ok(())
+    }
+
+    fn end(self, level: f64) -> Result<Piloted> {
+        let Self { law, points, images, per_spp, doubts, .. } = self;
         let at: Vec<f64> = points.iter().map(|&spp| f64::from(spp)).collect();
         let seen: Vec<Vec<&[f64]>> = images.iter().map(|of| of.iter().map(Vec::as_slice).collect()).collect();
         let curves = SeedCurves::of_images(&at, &seen);
