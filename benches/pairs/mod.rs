@@ -30,6 +30,9 @@ const LEVEL: f64 = 0.95;
 #[derive(Default)]
 pub(crate) struct Speedups(BTreeMap<String, Vec<Vec<f64>>>);
 
+/// A strategy, its ratios by process, and its speedup.
+type Compared<'a> = (&'a str, &'a Vec<Vec<f64>>, Estimate);
+
 /// The name of a case.
 pub(crate) fn name(strategy: &str, threads: &str) -> String {
     format!("{strategy}/{threads}")
@@ -122,7 +125,7 @@ impl Speedups {
             PROCESSES + 1
         );
         println!("{:<20} {:>7} {:>8}   {:<16} letters", "strategy", "threads", "speedup", "interval");
-        let mut by_threads: BTreeMap<&str, Vec<(&str, &Vec<Vec<f64>>, Estimate)>> = BTreeMap::new();
+        let mut by_threads: BTreeMap<&str, Vec<Compared<'_>>> = BTreeMap::new();
         for (case, processes) in &self.0 {
             let (Some((strategy, threads)), Some(found)) = (case.split_once('/'), paired_ratio(processes, LEVEL))
             else {

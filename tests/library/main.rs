@@ -19,6 +19,7 @@ mod image_notes;
 mod lanes;
 mod layering;
 mod metric;
+mod mistakes;
 mod pairing;
 mod peer;
 #[cfg(target_os = "linux")]

@@ -71,7 +71,7 @@ const EXCEPTIONS: &[(&str, &str, &[&str])] = &[
     (
         "figures/speedup.rs",
         "a speedup over its number of processors",
-        &["speedup / self.in_use(threads)", "speedup.value / processors"],
+        &["speedup / self.weight_in_use(threads)", "speedup.value / self.weight_in_use(s.key.threads)"],
     ),
     ("figures/timelines.rs", "parts of one run", &["seconds / (balance.makespan_s"]),
     (

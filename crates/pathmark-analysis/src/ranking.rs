@@ -75,7 +75,7 @@ pub fn may_be_least<K: Ord>(things: &[&BTreeMap<K, f64>], miss: f64, stopping: S
         // An interval misses on two sides, of which only one counts here.
         Stopping::Sequential => order_so_far(first, second, 2.0 * miss) == Some(Ordering::Less),
     };
-    things.iter().map(|own| !things.iter().any(|other| is_less(*other, *own))).collect()
+    things.iter().map(|own| !things.iter().any(|other| is_less(other, own))).collect()
 }
 
 /// The same for values that were measured in adjacent pairs.

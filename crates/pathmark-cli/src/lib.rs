@@ -13,8 +13,8 @@ pub use console::Allocator;
 use console::{Console, watch_memory};
 use pathmark_check as check;
 use pathmark_harness::{
-    analysis, atomic_file, cases_file, cluster, error, experiment, files, film, film_file, guard_prices, image_io,
-    input, kernel, lab, lock, material, math, measure, metric, sampling, scene, shell, simd, simulate,
+    analysis, atomic_file, cases_file, cluster, csv_file, error, experiment, files, film, film_file, guard_prices,
+    image_io, input, kernel, lab, lock, material, math, measure, metric, sampling, scene, shell, simd, simulate,
 };
 use pathmark_report::{self as report, plot};
 use std::ffi::OsString;
@@ -32,7 +32,7 @@ Examples:
   pathmark reproduce                                         run all experiments
   pathmark simulate rows.csv --workers 1..64                 forecast a traced run on more cores
 
-Measure: reproduce, run, rank, why, diff, price, report, claims    Render: render, merge, image
+Measure: reproduce, run, rank, why, diff, price, bursts, report, claims    Render: render, merge, image
 Look inside: inspect, simulate    Ask: doctor, machine, list, new, selftest, shell";
 
 /// A laboratory for scheduling unequal work on many cores, and for what accuracy costs in time.

@@ -63,7 +63,7 @@ fn serial(_: &mut Record) {}
 fn variants(figure: &str) -> Vec<fn(&mut Record)> {
     let mut variants: Vec<fn(&mut Record)> = vec![serial, pool];
     match figure {
-        "outputs" => variants.push(|row| {
+        "outputs" | "mistakes" => variants.push(|row| {
             pool(row);
             row.output = "locked".to_string();
         }),
@@ -135,6 +135,9 @@ fn options(figure: &str) -> &'static str {
         }
         "effects" => {
             "[[figure.effects.price]]\neffect = \"all\"\nabsent = { scene = \"cornell\", profile = \"smallpt\" }\nunused = { scene = \"cornell\", profile = \"all\" }\nused = { scene = \"cornell\", profile = \"all\" }"
+        }
+        "mistakes" => {
+            "[figure.mistakes]\nknown = 1.0\n[[figure.mistakes.pair]]\nname = \"a lock\"\nwrong = { sampler = \"independent\", output = \"locked\" }\nright = { sampler = \"independent\", output = \"slots\" }"
         }
         _ => "",
     }

@@ -338,6 +338,44 @@ fn options_reach_the_figure_of_any_experiment() {
     assert!(text.contains("time / time of mine") && text.contains("other"), "{text}");
 }
 
+/// Six seeds, of which the wrong way takes twice the time and has three times the error; three of the rows are of pairs
+/// whose later runs say nothing about the error.
+#[test]
+fn mistakes_are_told_by_time_and_by_error() {
+    let rows = (0..6).flat_map(|seed| {
+        let own = |sampler: &str, seconds: f64, error: f64| Record {
+            seed,
+            sampler: sampler.to_string(),
+            threads: 2,
+            makespan_s: Some(seconds),
+            mean_radiance: Some(1.0 + error),
+            ..row()
+        };
+        let error = if seed % 2 == 0 { 0.01 } else { -0.01 };
+        [own("bad", 2.0, 3.0 * error), own("good", 1.0, error)]
+    });
+    let mut rows: Vec<Record> = rows.collect();
+    for row in &mut rows[..6] {
+        row.pair = Some(0);
+    }
+    let later = |row: &Record| Record { pair: Some(1), cell: String::new(), mean_radiance: Some(9.0), ..row.clone() };
+    rows.extend(rows[..6].iter().map(later).collect::<Vec<_>>());
+    let rows = rows.into_iter().map(|row| Record { cell: format!("{} {}", row.sampler, row.seed), ..row });
+    let kind = |sampler: &str| format!("{{ sampler = \"{sampler}\", output = \"slots\" }}");
+    let pair = format!("name = \"a mistake\"\nwrong = {}\nright = {}", kind("bad"), kind("good"));
+    let options = format!("[figure.mistakes]\nknown = 1.0\n[[figure.mistakes.pair]]\n{pair}");
+    let results = results(&["mistakes"], &options, rows.collect()).unwrap();
+    let blocks = blocks(&results).unwrap();
+    let row = table(&blocks).rows().next().unwrap();
+    assert_eq!(row[..4], ["a mistake", "bad, slots", "good, slots", "2"]);
+    // F(6, 6) has the quantile 5.820 at 0.975, so the interval is 3 over and times its root, 2.412.
+    assert!(row[5].starts_with("2.000") && row[6].starts_with("3.00, 1.24 to 7.24"), "{row:?}");
+    let text = words(&blocks);
+    assert!(text.contains("The time grows most by a mistake: 2.00 times with 2 threads"), "{text}");
+    assert!(text.contains("The error of the mean grows most by a mistake: 3.00 times with 2 threads"), "{text}");
+    assert!(refusal(&["mistakes"], &options.replace("right", "rihgt")).contains("rihgt"));
+}
+
 #[test]
 fn every_built_in_experiment_gives_its_figures_known_options() {
     for (name, text) in experiments() {

@@ -1,5 +1,6 @@
 //! The verbs: one file for each, and files that several share.
 
+mod bursts;
 mod claims;
 mod diff;
 mod doctor;
@@ -62,6 +63,8 @@ pub(super) enum Verb {
     Inspect(inspect::Inspect),
     /// Try the hard cases of numerics, sampling and statistics on this machine.
     Selftest(selftest::Arguments),
+    /// Compare pools on short parallel regions with gaps: wake latency, and processor time of idle workers.
+    Bursts(bursts::Arguments),
     /// Judge the claims of the four reports by the results in a folder.
     Claims(claims::Arguments),
     /// Write a commented starter file for an experiment or a scene.
@@ -93,6 +96,7 @@ impl Verb {
             Self::Why(arguments) => why::run(&arguments, lab, console),
             Self::Diff(arguments) => diff::run(&arguments, console),
             Self::Price(arguments) => price::run(&arguments, lab, console),
+            Self::Bursts(arguments) => bursts::run(&arguments, lab, console),
             Self::Claims(arguments) => claims::run(&arguments, lab),
             Self::Report(arguments) => report::run(&arguments, lab),
             Self::Simulate(arguments) => simulate::run(&arguments, lab, console),

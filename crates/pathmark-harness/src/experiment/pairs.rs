@@ -76,7 +76,8 @@ pub(super) fn run_pairs(group: &mut [Contestant], pairs: u32, name: &str, proces
     while pair < wanted {
         let turn = process.wrapping_mul(pairs).wrapping_add(pair) / 2;
         let mut order = shuffled(group.len(), name, turn);
-        if pair % 2 == 1 {
+        let is_reverse = pair % 2 == 1;
+        if is_reverse {
             order.reverse();
         }
         for (place, at) in order.into_iter().enumerate() {

@@ -51,9 +51,9 @@ fn with_seed(settings: &Settings, spp: u32, seed: u64) -> Settings {
 impl Pilot {
     /// Renders the pilot. Intervals have the confidence `level`.
     pub fn run(&self, lab: &Lab, settings: &Settings, level: f64, progress: &dyn Progress) -> Result<Piloted> {
-        let mut course = self.begin(lab, settings, 1)?;
-        self.render(lab, std::slice::from_mut(&mut course), progress)?;
-        course.end(level)
+        let mut run = self.begin(lab, settings, 1)?;
+        self.render(lab, std::slice::from_mut(&mut run), progress)?;
+        run.end(level)
     }
 
     /// Renders the pilots of several settings side by side: each seed by all of them, in alternating order, so that drift
@@ -65,14 +65,14 @@ impl Pilot {
         level: f64,
         progress: &dyn Progress,
     ) -> Result<Vec<Piloted>> {
-        let courses = each.iter().map(|settings| self.begin(lab, settings, each.len()));
-        let mut courses = courses.collect::<Result<Vec<_>>>()?;
-        self.render(lab, &mut courses, progress)?;
-        courses.into_iter().map(|course| course.end(level)).collect()
+        let runs = each.iter().map(|settings| self.begin(lab, settings, each.len()));
+        let mut runs = runs.collect::<Result<Vec<_>>>()?;
+        self.render(lab, &mut runs, progress)?;
+        runs.into_iter().map(|run| run.end(level)).collect()
     }
 
     /// Checks the settings, one of `many`.
-    fn begin(&self, lab: &Lab, settings: &Settings, many: usize) -> Result<Course> {
+    fn begin(self, lab: &Lab, settings: &Settings, many: usize) -> Result<PilotRun> {
         let law = law_of(&settings.spec.sampler);
         let fewest = lab.prepare(with_seed(settings, self.spp, PILOT_SEEDS))?.fewest_spp();
         if !self.spp.is_multiple_of(fewest) {
@@ -95,7 +95,7 @@ impl Pilot {
         // The first run of a process is slower than the rest.
         lab.prepare(with_seed(settings, fewest, PILOT_SEEDS))?.run(None)?;
         let images = vec![Vec::new(); points.len()];
-        Ok(Course {
+        Ok(PilotRun {
             settings: settings.clone(),
             law,
             points,
@@ -105,16 +105,16 @@ impl Pilot {
         })
     }
 
-    fn render(&self, lab: &Lab, courses: &mut [Course], progress: &dyn Progress) -> Result<()> {
-        progress.begin("pilot", u64::from(self.seeds) * courses.len() as u64);
+    fn render(self, lab: &Lab, runs: &mut [PilotRun], progress: &dyn Progress) -> Result<()> {
+        progress.begin("pilot", u64::from(self.seeds) * runs.len() as u64);
         let mut done = 0;
         for seed in 0..self.seeds {
-            let mut order: Vec<&mut Course> = courses.iter_mut().collect();
+            let mut order: Vec<&mut PilotRun> = runs.iter_mut().collect();
             if seed % 2 == 1 {
                 order.reverse();
             }
-            for course in order {
-                course.render(lab, self.spp, PILOT_SEEDS + u64::from(seed))?;
+            for run in order {
+                run.render(lab, self.spp, PILOT_SEEDS + u64::from(seed))?;
                 done += 1;
                 progress.advance(done);
             }
@@ -125,7 +125,7 @@ impl Pilot {
 }
 
 /// The pilot of one renderer, and what its seeds have shown so far.
-struct Course {
+struct PilotRun {
     settings: Settings,
     law: Law,
     points: Vec<u32>,
@@ -135,7 +135,7 @@ struct Course {
     doubts: TimingConcerns,
 }
 
-impl Course {
+impl PilotRun {
     fn render(&mut self, lab: &Lab, spp: u32, seed: u64) -> Result<()> {
         let pixels = u64::from(self.settings.spec.width) * u64::from(self.settings.spec.height);
         let mut rounds = Rounds::new(lab.prepare(with_seed(&self.settings, spp, seed))?)?;

@@ -48,7 +48,14 @@ pub struct CalibrationRow {
 }
 
 #[derive(Default)]
-struct Counted(AtomicUsize);
+pub(super) struct Counted(AtomicUsize);
+
+impl Counted {
+    /// Threads so far.
+    pub(super) fn number(&self) -> usize {
+        self.0.load(Ordering::Relaxed)
+    }
+}
 
 impl Spawner for Counted {
     fn spawn(&self, name: String, body: Box<dyn FnOnce() + Send + 'static>) -> io::Result<JoinHandle<()>> {
@@ -122,13 +129,13 @@ fn run_empty_jobs(lab: &Lab, row: &CalibrationRow) -> Result<CalibrationRow> {
     let spawner = Arc::new(Counted::default());
     let config = Config { parameter, spawner: spawner.clone(), ..Config::new(threads) };
     let mut strategy = entry.build(config).map_err(failed)?;
-    let before = spawner.0.load(Ordering::Relaxed);
+    let before = spawner.number();
     let usage = Usage::now();
     let start = Instant::now();
     strategy.run(row.jobs, Arc::new(|index| _ = black_box(index))).map_err(failed)?;
     let seconds = start.elapsed().as_secs_f64();
     let used = usage.zip(Usage::now()).map(|(before, after)| after.since(&before));
-    let started = spawner.0.load(Ordering::Relaxed) - before;
+    let started = spawner.number() - before;
     let cpu_s = used.map(|used| used.user_s + used.system_s);
     Ok(CalibrationRow { seconds, cpu_s, started, ..row.clone() })
 }

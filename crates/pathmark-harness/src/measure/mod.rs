@@ -2,9 +2,11 @@
 //!
 //! [`Settings`] say what to render, in which pieces, and on which workers; [`Setup::prepare`] checks them;
 //! [`Setup::run`] renders, times and verifies; the result is a film, a [`Trace`] and a [`Record`]. [`Rounds`] add more
-//! samples to an existing film. [`calibrate`] times strategies on empty jobs, for the simulator.
+//! samples to an existing film. [`calibrate`] times strategies on empty jobs, for the simulator, and
+//! [`run_bursts`] on short regions with gaps.
 
 mod adaptive;
+mod bursts;
 mod calibration;
 mod checkpoint;
 mod chrome_trace;
@@ -40,6 +42,7 @@ pub use crate::settings::{
     ImageKey, Kind, LARGEST_BYTES, LARGEST_SEED, LARGEST_SPP, SETTINGS, ScheduleKey, Setting, Settings,
     available_threads, image_columns, parse_size, schedule_columns, schedule_name,
 };
+pub use bursts::{BurstRow, Bursts, Spin, keeps_threads, run_bursts};
 pub use calibration::{CalibrationRow, calibrate, read_calibration, write_calibration};
 pub use checkpoint::{Checkpoint, Saved};
 pub use chrome_trace::chrome_trace;

@@ -23,6 +23,7 @@ mod granularity;
 mod kernels;
 mod losses;
 mod message_costs;
+mod mistakes;
 mod openmp;
 pub(crate) mod options;
 mod outputs;
@@ -101,6 +102,7 @@ pub const FIGURES: &[FigureEntry] = entries! {
     timelines, "timelines", NoOptions, "jobs of each worker over time, and the parts of workers x makespan";
     cost_map, "cost-map", NoOptions, "seconds of each tile over the image";
     generators, "generators", generators::Options, "time by random number generator and threads, with context switches";
+    mistakes, "mistakes", mistakes::Options, "errors on purpose beside the right way: time, and error of the image's mean";
     outputs, "outputs", Yardstick, "time and memory of each output, by which pieces get into the film";
     roughness, "roughness", roughness::Options, "a rough material with directions by the cosine and by its facets: images, variance, time";
     openmp, "openmp", Yardstick, "time of each strategy as a multiple of OpenMP's dynamic schedule";

@@ -355,7 +355,9 @@ fn compared<T, L: Ord>(cells: Vec<(T, Repeats)>, lines: &[L], stopping: Stopping
         };
         let places = indices.iter().map(|index| {
             let mut counts: BTreeMap<Place, usize> = BTreeMap::new();
-            processes(&cells[*index].1.0).keys().for_each(|key| *counts.entry(place(key)).or_default() += 1);
+            for key in processes(&cells[*index].1.0).keys() {
+                *counts.entry(place(key)).or_default() += 1;
+            }
             // A round counts if each image of the cell has it.
             let whole = if is_of_one { 1 } else { counts.values().copied().max().unwrap_or(0) };
             counts.into_iter().filter(|(_, count)| *count >= whole).map(|(place, _)| place).collect()

@@ -12,13 +12,17 @@ pub mod independent;
 mod libc_rand;
 mod locked;
 mod owen;
+mod padded;
 mod per_thread;
+mod racy;
+mod same_seed;
 #[doc(hidden)]
 pub mod sobol;
 #[doc(hidden)]
 mod stratified;
 #[cfg(test)]
 mod tests;
+mod unpadded;
 mod warp;
 
 pub use crate::math::unit;
@@ -26,9 +30,13 @@ pub use hash::Hash;
 pub use independent::{Independent, mix};
 pub use libc_rand::LibcRand;
 pub use locked::Locked;
+pub use padded::Padded;
 pub use per_thread::PerThread;
+pub use racy::Racy;
+pub use same_seed::SameSeed;
 pub use sobol::{ORDERS, SUBPIXEL, Sobol, each_third};
 pub use stratified::Stratified;
+pub use unpadded::Unpadded;
 pub use warp::{UNIFORM_SPHERE_DENSITY, concentric_disk, cosine_hemisphere, tent, uniform_sphere};
 
 /// The identity of a sample: its image's seed, its pixel and its index.
@@ -164,6 +172,10 @@ samplers! {
         "libc-rand", "the C library's one rand() behind its lock (report A); not deterministic" => LibcRand::new;
         "locked", "one PCG32 behind a lock; not deterministic" => Locked::new;
         "per-thread", "a PCG32 for each thread; not deterministic" => PerThread::new;
+        "padded", "a SplitMix64 for each thread, each on cache lines of its own; not deterministic" => Padded::new;
+        "unpadded", "wrong on purpose: as padded, but side by side on one cache line; not deterministic" => Unpadded::new;
+        "racy", "wrong on purpose: one SplitMix64 for all threads, without a lock; not deterministic" => Racy::new;
+        "same-seed", "wrong on purpose: as per-thread, but with the same numbers in every thread; not deterministic" => SameSeed::new;
     }
 }
 

@@ -4,7 +4,7 @@
 //! renders it. So no two runs with more than one thread are alike, and rendering a pixel again does not reproduce an
 //! error. This sampler exists to be measured, not to be used.
 
-use super::{Address, Sampler};
+use super::{Address, Sampler, mix};
 use crate::math::unit;
 use rand::Rng;
 use rand_pcg::Pcg32;
@@ -17,6 +17,8 @@ pub struct PerThread {
     /// Distinguishes this sampler's generators from those that an earlier sampler left in a pool's threads.
     id: u64,
     threads: AtomicU64,
+    /// How far the streams of two threads lie apart.
+    step: u64,
 }
 
 thread_local! {
@@ -26,8 +28,13 @@ thread_local! {
 impl PerThread {
     /// Creates a sampler with this seed and one generator stream per thread.
     pub fn new(seed: u64) -> Self {
+        Self::stepping(seed, 1)
+    }
+
+    /// Creates a sampler whose threads have streams at this distance; with 0, all have the same.
+    pub(super) fn stepping(seed: u64, step: u64) -> Self {
         static SAMPLERS: AtomicU64 = AtomicU64::new(1);
-        Self { seed, id: SAMPLERS.fetch_add(1, Ordering::Relaxed), threads: AtomicU64::new(0) }
+        Self { seed, id: SAMPLERS.fetch_add(1, Ordering::Relaxed), threads: AtomicU64::new(0), step }
     }
 }
 
@@ -36,7 +43,9 @@ impl Sampler for PerThread {
         GENERATOR.with_borrow_mut(|(owner, generator)| {
             if *owner != self.id {
                 *owner = self.id;
-                *generator = Pcg32::new(self.seed, self.threads.fetch_add(1, Ordering::Relaxed));
+                let stream = self.threads.fetch_add(self.step, Ordering::Relaxed);
+                // Streams from one state are correlated, so each stream starts in a state of its own.
+                *generator = Pcg32::new(mix(self.seed ^ mix(stream)), stream);
             }
             [(); 2].map(|()| unit(generator.next_u64()))
         })
