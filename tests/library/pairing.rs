@@ -71,7 +71,11 @@ const EXCEPTIONS: &[(&str, &str, &[&str])] = &[
     (
         "figures/speedup.rs",
         "a speedup over its number of processors",
-        &["speedup / self.weight_in_use(threads)", "speedup.value / self.weight_in_use(s.key.threads)"],
+        &[
+            "speedup / self.weight_in_use(threads)",
+            "speedup.value / self.weight_in_use(s.key.threads)",
+            "speedup.value / processors",
+        ],
     ),
     ("figures/timelines.rs", "parts of one run", &["seconds / (balance.makespan_s"]),
     (

@@ -141,7 +141,8 @@ mod tests {
         let mut scenes = 0;
         for (name, _) in SCENES {
             let scene = load(name).unwrap();
-            if !scene.is_round() || scene.hierarchy.is_some() {
+            // One sphere has no edge to another.
+            if !scene.is_round() || scene.hierarchy.is_some() || scene.owners.len() < 2 {
                 continue;
             }
             scenes += 1;
