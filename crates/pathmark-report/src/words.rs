@@ -31,7 +31,7 @@ pub(super) fn with_level(interval: &Interval, digits: usize) -> String {
     format!("{:.digits$} to {:.digits$} ({:.1} %)", interval.low, interval.high, interval.level * 100.0)
 }
 
-/// The confidence of some intervals of medians, in words for a caption.
+/// The confidence of some intervals, in words for a caption: of medians, or of means over processes of pairs.
 fn confidence(intervals: impl IntoIterator<Item = Interval>) -> String {
     let mut levels: Vec<f64> = intervals.into_iter().map(|interval| at_least_percent(interval.level)).collect();
     levels.sort_by(f64::total_cmp);
@@ -40,7 +40,7 @@ fn confidence(intervals: impl IntoIterator<Item = Interval>) -> String {
         [least, .., most] if least < most => format!("{least:.1} to {most:.1}"),
         [level, ..] => format!("{level:.1}"),
     };
-    format!("distribution-free interval of the median, {levels} % confidence")
+    format!("interval of the typical value, {levels} % confidence")
 }
 
 /// A confidence in percent, rounded down to one decimal. Binomial sums may give a half as .4999999, which still counts
@@ -75,8 +75,8 @@ mod tests {
     #[test]
     fn a_caption_tells_the_least_and_the_most_confidence() {
         let of = |levels: &[f64]| confidence(levels.iter().map(|&level| Interval { low: 0.0, high: 1.0, level }));
-        assert_eq!(of(&[0.95, 0.75, 0.96]), "distribution-free interval of the median, 75.0 to 96.0 % confidence");
-        assert_eq!(of(&[0.95; 3]), "distribution-free interval of the median, 95.0 % confidence");
+        assert_eq!(of(&[0.95, 0.75, 0.96]), "interval of the typical value, 75.0 to 96.0 % confidence");
+        assert_eq!(of(&[0.95; 3]), "interval of the typical value, 95.0 % confidence");
         assert_eq!(of(&[]), "no interval, for want of repetitions");
     }
 
