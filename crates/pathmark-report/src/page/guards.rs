@@ -41,7 +41,9 @@ fn plot(rows: &[PriceRow], machine: String) -> DotPlot {
     let named = rows.iter().map(|row| DotRow { name: row.guard.clone(), dots: vec![dot(row)] }).collect();
     let mut plot = DotPlot::new("What each guard costs", Axis::log("time with the guard / time without"), named);
     plot.subtitle = machine;
-    plot.caption = "Bars: 95 % interval of the ratio in adjacent rounds. The table says what goes wrong without each guard.".to_string();
+    plot.caption =
+        "Bars: 95 % interval of the ratio in adjacent rounds. The table says what goes wrong without each guard."
+            .to_string();
     plot.guides = vec![(1.0, "as fast".to_string())];
     plot
 }
