@@ -3,6 +3,7 @@
 use crate::diff::{json, run};
 use crate::experiment::{TINY, write_tiny};
 use assert_cmd::cargo::cargo_bin;
+use pathmark::measure::COLUMNS;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -20,6 +21,14 @@ fn rows(folder: &Path) -> Vec<Run> {
         (cell, process.parse().unwrap(), pair.parse().ok(), place.parse().ok(), order.parse().unwrap())
     };
     reader.records().map(|row| run(row.unwrap())).collect()
+}
+
+/// Whether a line of `records.csv` is a row in pairs of this process.
+fn rows_of_process(line: &str, process: u32) -> bool {
+    let head = COLUMNS.iter().position(|column| column.name == "repetition").unwrap();
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(line.as_bytes());
+    let row = reader.records().next().unwrap().unwrap();
+    row[head] == process.to_string() && !row[head + 1].is_empty()
 }
 
 fn compared(with: &str) -> String {
@@ -60,6 +69,28 @@ fn compared_cells_run_in_turns() {
     // The page draws speedups from both kinds of rows.
     let figure = fs::read_to_string(folder.path().join("out/tiny/figures/speedup.svg")).unwrap();
     assert!(figure.contains("work-stealing"), "{figure}");
+}
+
+/// A process that lacks a cell's rows runs all of its cells again, in pairs of new numbers: rows of two times make no pair.
+#[test]
+fn a_resumed_process_makes_no_pairs_with_older_rows() {
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), &compared("with = { strategy = [\"serial\"] }"));
+    run(folder.path(), &["run", "tiny.toml"], 0);
+    let path = folder.path().join("out/tiny/records.csv");
+    let text = fs::read_to_string(&path).unwrap();
+    let is_lost = |line: &str| line.contains("work-stealing/2t,") && rows_of_process(line, 1);
+    let kept: Vec<&str> = text.lines().filter(|line| !is_lost(line)).collect();
+    assert_eq!(text.lines().count(), kept.len() + 2);
+    fs::write(&path, kept.join("\n") + "\n").unwrap();
+    run(folder.path(), &["run", "tiny.toml", "--resume"], 0);
+    let of_process: Vec<Run> =
+        rows(&folder.path().join("out/tiny")).into_iter().filter(|run| run.1 == 1 && run.2.is_some()).collect();
+    for pair in [2, 3] {
+        assert_eq!(of_process.iter().filter(|run| run.2 == Some(pair)).count(), 3, "{of_process:?}");
+    }
+    let stealing = of_process.iter().filter(|run| run.0.ends_with("work-stealing/2t"));
+    assert!(stealing.map(|run| run.2).eq([Some(2), Some(3)]), "{of_process:?}");
 }
 
 #[test]

@@ -74,13 +74,7 @@ pub(super) fn run_pairs(group: &mut [Contestant], pairs: u32, name: &str, proces
     let mut rows: Vec<(usize, Record)> = Vec::new();
     let (mut pair, mut wanted) = (0, pairs);
     while pair < wanted {
-        let turn = process.wrapping_mul(pairs).wrapping_add(pair) / 2;
-        let mut order = shuffled(group.len(), name, turn);
-        let is_reverse = pair % 2 == 1;
-        if is_reverse {
-            order.reverse();
-        }
-        for (place, at) in order.into_iter().enumerate() {
+        for (place, at) in order(group.len(), name, [process, pairs, pair]).into_iter().enumerate() {
             if let Some(row) = group[at].run() {
                 rows.push((at, Record { pair: Some(pair), place: Some(place as u32), ..row }));
             }
@@ -93,6 +87,16 @@ pub(super) fn run_pairs(group: &mut [Contestant], pairs: u32, name: &str, proces
         pair += 1;
     }
     rows
+}
+
+/// The order of a pair: every second one is the reverse of the one before.
+fn order(cells: usize, name: &str, [process, pairs, pair]: [u32; 3]) -> Vec<usize> {
+    let mut order = shuffled(cells, name, process.wrapping_mul(pairs.div_ceil(2)).wrapping_add(pair / 2));
+    let is_reverse = pair % 2 == 1;
+    if is_reverse {
+        order.reverse();
+    }
+    order
 }
 
 /// The number of pairs for runs of that length: even, so that each order occurs as often as its reverse.
@@ -110,5 +114,17 @@ mod tests {
     fn long_runs_have_fewer_pairs() {
         assert_eq!([0.0, 0.05, 0.1, 1.0, 60.0].map(|length| affordable(16, length)), [16, 16, 8, 2, 2]);
         assert_eq!(affordable(1, 0.01), 2);
+    }
+
+    /// Also with an odd number of pairs, which is rounded up.
+    #[test]
+    fn every_second_order_is_the_reverse_of_the_one_before() {
+        for (process, pairs) in [(0, 4), (1, 5), (3, 1), (7, 16)] {
+            for pair in (0..affordable(pairs, 0.0)).step_by(2) {
+                let [first, mut second] = [pair, pair + 1].map(|pair| order(9, "x", [process, pairs, pair]));
+                second.reverse();
+                assert_eq!(first, second, "{process} {pairs} {pair}");
+            }
+        }
     }
 }

@@ -28,6 +28,8 @@ pub(super) struct Running<'a> {
     serial: Vec<Option<usize>>,
     /// The first row's checksum of each image.
     checksums: HashMap<String, String>,
+    /// For each process, the first number that no pair has yet.
+    first_pairs: HashMap<u32, u32>,
     drift: Drift,
     limits: Limits<'a>,
     lowest_seed: Option<u64>,
@@ -68,6 +70,7 @@ impl<'a> Running<'a> {
             decisions: Decisions::default(),
             serial: serial_runs(&sweep.cells),
             checksums: HashMap::new(),
+            first_pairs: HashMap::new(),
             drift: Drift::of(&done),
             limits,
             pairs,
@@ -90,6 +93,8 @@ impl<'a> Running<'a> {
 
     fn note(&mut self, record: &Record) {
         self.finished.insert((record.cell.clone(), record.repetition));
+        let first = self.first_pairs.entry(record.repetition).or_default();
+        *first = record.pair.map_or(*first, |pair| (*first).max(pair + 1));
         self.decisions.note(record, true);
     }
 
@@ -127,18 +132,22 @@ impl<'a> Running<'a> {
     pub(super) fn side_by_side(&mut self, members: &[usize], process: u32) -> Result<()> {
         let cells = &self.sweep.cells;
         let is_missing = |index: &usize| !self.finished.contains(&(cells[*index].points[0].id.clone(), process));
-        let missing: Vec<usize> = members.iter().copied().filter(is_missing).collect();
+        if !members.iter().any(is_missing) {
+            return Ok(());
+        }
+        // Rows that a resumed sweep lacks would have no run beside them, so all cells run again, in new pairs.
+        let resumed = self.first_pairs.get(&process).copied().filter(|_| !members.iter().all(is_missing));
         let job = |index: usize, running: &Self| {
             let of = (process, running.order);
             running.sweep.job(&cells[index], of, &running.folder, &running.references, running.lowest_seed)
         };
         let own = std::env::current_exe().map_err(|e| format!("finding this program: {e}"));
         let mut group = Vec::new();
-        for index in &missing {
+        for index in members {
             let limit = self.limits.limit(&cells[*index]);
             group.push(Contestant::new(job(*index, self), own.clone(), limit));
         }
-        for index in missing.iter().filter(|_| self.baseline.is_some()) {
+        for index in members.iter().filter(|_| self.baseline.is_some()) {
             let limit = self.limits.limit(&cells[*index]);
             let program =
                 self.baseline.as_ref().map(|baseline| baseline.program().to_path_buf()).ok_or_else(String::new);
@@ -148,7 +157,8 @@ impl<'a> Running<'a> {
         drop(group);
         let (mut owns, mut others, first) = (Vec::new(), Vec::new(), self.order);
         for (at, record) in rows {
-            match missing.get(at) {
+            let record = Record { pair: record.pair.map(|pair| pair + resumed.unwrap_or(0)), ..record };
+            match members.get(at) {
                 Some(index) => owns.push(self.checked(record, &cells[*index].points[0].image)),
                 // Both builds number their rows alike.
                 None => others.push(Record { run_order: first + others.len() as u64, ..record }),
@@ -190,7 +200,6 @@ impl<'a> Running<'a> {
         self.summary.rows += 1;
         self.order += 1;
         self.note(&record);
-        self.decisions.note(&record, true);
         record
     }
 
