@@ -4,7 +4,7 @@
 //! numbers, nets are incomplete and worse.
 //!
 //! `--estimator all` prices every unbiased estimator. For one estimator, small pilots of the others find out whether
-//! one of them would be faster.
+//! one of them would be faster. Estimators are compared by runs in pairs, over several processes.
 
 use super::prelude::*;
 use super::rank::letters;
@@ -14,7 +14,7 @@ use crate::analysis::price::{Law, Price};
 use crate::analysis::ranking::groups;
 use crate::analysis::tail::Tail;
 use crate::analysis::{Estimate, Interval};
-use crate::experiment::{Pilot, Piloted, law_of, pay};
+use crate::experiment::{Pilot, Piloted, law_of, pay, run_pilots};
 use crate::kernel::Spec;
 use crate::measure::{LARGEST_SEED, LARGEST_SPP, TimingConcerns};
 use std::collections::BTreeSet;
@@ -85,6 +85,9 @@ struct Row {
     doubted_seeds: usize,
     #[serde(skip)]
     counts: Counts,
+    /// The factor by which rounding raised the seconds.
+    #[serde(skip)]
+    surplus: f64,
 }
 
 /// The numbers of samples that can be rendered.
@@ -129,27 +132,56 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     let is_comparison = asked.spec.estimator == ALL;
     let each = if is_comparison { unbiased(lab, &asked).collect() } else { vec![asked] };
     lab.prepare(each[0].clone())?.remarks().iter().for_each(|remark| console.note(remark));
+    let own = |settings: &Settings| Pilot { settings: settings.clone(), seeds: arguments.pilot_seeds };
+    let mut pilots: Vec<Pilot> = each.iter().map(own).collect();
+    pilots.extend(if is_comparison { Vec::new() } else { smaller_pilots(lab, arguments, &each[0])? });
+    let mut found = run_pilots(lab, &pilots, LEVEL, console)?;
+    let others = found.split_off(each.len());
+    let found = found.into_iter().collect::<Result<Vec<Piloted>>>()?;
     let (mut priced, mut texts, mut doubts) = (Vec::new(), Vec::new(), TimingConcerns::default());
-    let pilot = Pilot { spp: arguments.pilot_spp, seeds: arguments.pilot_seeds };
-    for (settings, piloted) in each.iter().zip(pilot.run_side_by_side(lab, &each, LEVEL, console)?) {
-        let rows = price(lab, arguments, settings, &piloted, console)?;
-        texts.push(table(settings, arguments, &piloted, &rows));
+    for (settings, piloted) in each.iter().zip(&found) {
+        let rows = price(lab, arguments, settings, piloted, console)?;
+        texts.push(table(settings, arguments, piloted, &rows));
         doubts.merge(&piloted.doubts);
         priced.extend(rows);
     }
     note_doubts(&doubts, console);
     if is_comparison {
-        arguments.rmse.iter().for_each(|goal| group(*goal, &mut priced));
+        for goal in &arguments.rmse {
+            group(*goal, &mut priced, |own, other| found[own].seconds_over(&found[other], *goal, LEVEL));
+        }
     }
     if arguments.json {
         return print_json(&priced);
     }
     if is_comparison {
         texts.push(ranking(&arguments.rmse, &priced));
-    } else {
-        texts.extend(sooner(lab, arguments, &each[0], &priced, console)?);
+    } else if let Some(first) = priced.first() {
+        // A pilot may have too few samples for a law; that estimator is then left out.
+        let others = pilots[1..].iter().zip(others).filter_map(|(pilot, other)| {
+            let (name, other) = (pilot.settings.spec.estimator.clone(), other.ok()?);
+            let seconds = other.renderer.price(first.rmse)?.seconds;
+            Some((name, seconds, other.seconds_over(&found[0], first.rmse, LEVEL)?))
+        });
+        texts.extend(soonest(first.rmse, others.collect()));
     }
     print(&texts.join("\n\n"))
+}
+
+/// Small pilots of the other unbiased estimators; none beside a biased one, whose error does not fall to any goal.
+fn smaller_pilots(lab: &Lab, arguments: &Arguments, own: &Settings) -> Result<Vec<Pilot>> {
+    if !unbiased(lab, own).any(|other| other == *own) {
+        return Ok(Vec::new());
+    }
+    let pilot = |other: Settings| {
+        // The pilot's samples may be too few for this estimator.
+        let entry = lab.estimators().find(|entry| entry.name == other.spec.estimator);
+        let multiple = entry.map_or(1, |entry| entry.spp_multiple);
+        let fewest = lab.prepare(Settings { spp: multiple, ..other.clone() })?.fewest_spp();
+        let spp = (arguments.pilot_spp / SHORTER).next_multiple_of(fewest).max(fewest);
+        Ok(Pilot { settings: Settings { spp, ..other }, seeds: FEW_SEEDS })
+    };
+    unbiased(lab, own).filter(|other| other != own).map(pilot).collect()
 }
 
 /// The settings with each unbiased estimator: those that have no bounce limit of their own.
@@ -170,16 +202,25 @@ fn price(
     arguments.rmse.iter().map(|goal| row(lab, arguments, settings, piloted, *goal, counts, console)).collect()
 }
 
-/// Puts the estimators of a goal into groups: two share one if their intervals overlap.
-fn group(goal: f64, rows: &mut [Row]) {
+/// Puts the estimators of a goal into groups: two share one unless the interval of the ratio of their seconds lies
+/// entirely on one side of 1. `seconds_over` has the ratio of two rows of the goal, by their places among these.
+fn group(goal: f64, rows: &mut [Row], seconds_over: impl Fn(usize, usize) -> Option<Estimate>) {
     let mut of_goal: Vec<&mut Row> = rows.iter_mut().filter(|row| row.rmse == goal).collect();
-    of_goal.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
-    let pairs = (0..of_goal.len()).flat_map(|a| (0..of_goal.len()).map(move |b| (a, b)));
-    let told: BTreeSet<(usize, usize)> =
-        pairs.filter(|(a, b)| of_goal[*a].seconds_high < of_goal[*b].seconds_low).collect();
-    let sets = groups(of_goal.len(), &told);
-    for (at, row) in of_goal.into_iter().enumerate() {
-        row.groups = (0..sets.len()).filter(|number| sets[*number].contains(&at)).collect();
+    let is_sooner = |own: usize, other: usize| {
+        let rounded = of_goal[own].surplus / of_goal[other].surplus;
+        seconds_over(own, other).is_some_and(|ratio| ratio.interval.high * rounded < 1.0)
+    };
+    let count = of_goal.len();
+    let pairs = (0..count).flat_map(|a| (0..count).map(move |b| (a, b)));
+    let told: BTreeSet<(usize, usize)> = pairs.filter(|(a, b)| a != b && is_sooner(*a, *b)).collect();
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by(|a, b| of_goal[*a].seconds.total_cmp(&of_goal[*b].seconds));
+    let place = |of: usize| order.iter().position(|own| *own == of).unwrap_or_default();
+    // The letters begin with the soonest.
+    let told = told.into_iter().map(|(a, b)| (place(a), place(b))).collect();
+    let sets = groups(count, &told);
+    for (at, own) in order.into_iter().enumerate() {
+        of_goal[own].groups = (0..sets.len()).filter(|number| sets[*number].contains(&at)).collect();
     }
 }
 
@@ -192,37 +233,22 @@ fn ranking(goals: &[f64], rows: &[Row]) -> String {
             of_goal.iter().map(|row| format!("{} {:.3} s ({})", row.estimator, row.seconds, letters(&row.groups)));
         format!("RMSE {goal}: {}", each.collect::<Vec<_>>().join(", "))
     };
-    let rule = "Estimators that share a letter cannot be told apart: their intervals overlap.".to_string();
+    let rule =
+        "Estimators that share a letter cannot be told apart: the interval of the ratio of their seconds contains 1."
+            .to_string();
     goals.iter().map(line).chain([rule]).collect::<Vec<_>>().join("\n")
 }
 
-/// Describes an estimator that would certainly reach the first goal sooner than the chosen one; `None` if short pilots
-/// find none.
-fn sooner(lab: &Lab, arguments: &Arguments, own: &Settings, rows: &[Row], console: &Console) -> Result<Option<String>> {
-    let Some(first) = rows.first().filter(|_| unbiased(lab, own).any(|other| other == *own)) else { return Ok(None) };
-    let mut others = Vec::new();
-    for other in unbiased(lab, own).filter(|other| other != own) {
-        // The pilot's samples may be too few for this estimator.
-        let entry = lab.estimators().find(|entry| entry.name == other.spec.estimator);
-        let multiple = entry.map_or(1, |entry| entry.spp_multiple);
-        let fewest = lab.prepare(Settings { spp: multiple, ..other.clone() })?.fewest_spp();
-        let spp = (arguments.pilot_spp / SHORTER).next_multiple_of(fewest).max(fewest);
-        // The pilot may have too few samples for a law; the estimator is then left out.
-        let Ok(found) = (Pilot { spp, seeds: FEW_SEEDS }).run(lab, &other, LEVEL, console) else { continue };
-        others.extend(found.renderer.price(first.rmse).map(|price| (other.spec.estimator, price.seconds)));
-    }
-    Ok(soonest(first, others))
-}
-
-/// Describes the soonest of the estimators whose intervals lie entirely below the row's.
-fn soonest(row: &Row, others: Vec<(String, Estimate)>) -> Option<String> {
-    let sooner = others.into_iter().filter(|(_, seconds)| seconds.interval.high < row.seconds_low);
-    let (name, seconds) = sooner.min_by(|(_, a), (_, b)| a.value.total_cmp(&b.value))?;
+/// Describes the soonest of the estimators that surely reach the goal sooner than the chosen one: each with its seconds,
+/// and with these over those of the chosen one.
+fn soonest(goal: f64, others: Vec<(String, Estimate, Estimate)>) -> Option<String> {
+    let sooner = others.into_iter().filter(|(_, _, ratio)| ratio.interval.high < 1.0);
+    let (name, seconds, ratio) = sooner.min_by(|a, b| a.2.value.total_cmp(&b.2.value))?;
     let Interval { low, high, .. } = seconds.interval;
-    let times = row.seconds / seconds.value;
+    let times = 1.0 / ratio.value;
     Some(format!(
-        "{name} would reach RMSE {} in {:.3} s ({low:.3} to {high:.3}), {times:.1} times as fast; compare with --estimator {ALL}",
-        row.rmse, seconds.value
+        "{name} would reach RMSE {goal} in {:.3} s ({low:.3} to {high:.3}), {times:.1} times as fast; compare with --estimator {ALL}",
+        seconds.value
     ))
 }
 
@@ -250,13 +276,14 @@ fn row(
     let expected_s = f64::from(spp) * renderer.seconds_per_spp.value;
     let expected = renderer.rmse_after(expected_s).map(|error| error.value);
     let half = renderer.price(0.5 * rmse);
+    let surplus = counts.surplus(samples.value);
     Ok(Row {
         estimator: settings.spec.estimator.clone(),
         rmse,
         spp,
         spp_low: samples.interval.low,
         spp_high: samples.interval.high,
-        seconds: seconds.value * counts.surplus(samples.value),
+        seconds: seconds.value * surplus,
         seconds_low: seconds.interval.low * counts.surplus(samples.interval.low),
         seconds_high: seconds.interval.high * counts.surplus(samples.interval.high),
         half_rmse_seconds: half.map(|half| half.seconds.value * counts.surplus(half.spp.value)),
@@ -268,6 +295,7 @@ fn row(
         tail: piloted.tail,
         doubted_seeds: piloted.doubts.count(),
         counts,
+        surplus,
     })
 }
 
@@ -336,35 +364,59 @@ mod tests {
         assert_eq!((plain.surplus(65.0), doubled.surplus(80.0)), (1.0, 1.6));
     }
 
-    fn seconds(value: f64, low: f64, high: f64) -> Estimate {
+    fn estimate(value: f64, low: f64, high: f64) -> Estimate {
         Estimate { value, interval: Interval { low, high, level: LEVEL } }
     }
 
-    /// Intervals that overlap leave the order open: a and b overlap, b and c do, a and c do not, and d is far from all.
+    /// a and b cannot be told apart, b and c cannot, a is sooner than c, and d is later than all.
     #[test]
-    fn estimators_are_told_apart_by_disjoint_intervals() {
-        let row = |name: &str, low: f64, seconds: f64, high: f64| {
-            let estimator = name.to_string();
-            Row { estimator, rmse: 0.1, seconds, seconds_low: low, seconds_high: high, ..Row::default() }
+    fn estimators_are_told_apart_by_the_ratio_of_their_seconds() {
+        let row = |name: &str, seconds: f64| Row {
+            estimator: name.to_string(),
+            rmse: 0.1,
+            seconds,
+            surplus: 1.0,
+            ..Row::default()
         };
-        let mut rows =
-            [row("d", 8.0, 9.0, 10.0), row("b", 1.9, 3.0, 4.0), row("a", 1.0, 1.5, 2.0), row("c", 3.9, 4.5, 5.0)];
-        group(0.1, &mut rows);
+        let mut rows = [row("d", 9.0), row("b", 3.0), row("a", 1.5), row("c", 4.5)];
+        let half_width = [1.1_f64, 2.2, 2.2, 1.4];
+        let seconds: Vec<f64> = rows.iter().map(|row| row.seconds).collect();
+        let ratio = |own: usize, other: usize| {
+            let (value, width) = (seconds[own] / seconds[other], half_width[own].max(half_width[other]));
+            Some(estimate(value, value / width, value * width))
+        };
+        group(0.1, &mut rows, ratio);
         let text = ranking(&[0.1], &rows);
         let (line, rule) = text.split_once('\n').unwrap();
         assert_eq!(line, "RMSE 0.1: a 1.500 s (a), b 3.000 s (a b), c 4.500 s (b), d 9.000 s (c)");
         assert!(rule.contains("cannot be told apart"), "{rule}");
     }
 
+    /// Rounding up to powers of two belongs to the price: twice the seconds take away an advantage of a third.
+    #[test]
+    fn rounding_up_counts() {
+        let row = |seconds: f64, surplus: f64| Row { rmse: 0.1, seconds, surplus, ..Row::default() };
+        let ratio = |own: usize, other: usize| {
+            let value = [2.0, 3.0][own] / [2.0, 3.0][other];
+            Some(estimate(value, value / 1.01, value * 1.01))
+        };
+        let mut rows = [row(2.0, 1.0), row(3.0, 1.0)];
+        group(0.1, &mut rows, ratio);
+        assert_eq!(rows.map(|row| row.groups), [vec![0], vec![1]]);
+        let mut rows = [row(3.0, 1.5), row(3.0, 1.0)];
+        group(0.1, &mut rows, ratio);
+        assert_eq!(rows.map(|row| row.groups), [vec![0], vec![0]]);
+    }
+
     #[test]
     fn the_soonest_is_told_if_it_surely_is_sooner() {
-        let row = Row { rmse: 0.1, seconds: 4.0, seconds_low: 3.0, seconds_high: 5.0, ..Row::default() };
-        let told = |others: &[(&str, Estimate)]| {
-            soonest(&row, others.iter().map(|(name, seconds)| ((*name).to_string(), *seconds)).collect())
+        let told = |others: &[(&str, Estimate, Estimate)]| {
+            soonest(0.1, others.iter().map(|(name, seconds, ratio)| ((*name).to_string(), *seconds, *ratio)).collect())
         };
         assert_eq!(told(&[]), None);
-        assert_eq!(told(&[("a", seconds(2.0, 1.0, 3.0))]), None, "the intervals touch");
-        let text = told(&[("a", seconds(2.0, 1.0, 2.9)), ("b", seconds(0.5, 0.4, 0.6))]).unwrap();
+        let a = ("a", estimate(2.0, 1.0, 3.0), estimate(0.5, 0.25, 1.0));
+        assert_eq!(told(&[a]), None, "the interval of the ratio touches 1");
+        let text = told(&[a, ("b", estimate(0.5, 0.4, 0.6), estimate(0.125, 0.1, 0.15))]).unwrap();
         assert!(text.starts_with("b would reach RMSE 0.1 in 0.500 s (0.400 to 0.600), 8.0 times as fast"), "{text}");
     }
 }

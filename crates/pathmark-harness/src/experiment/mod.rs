@@ -58,7 +58,7 @@ pub use matrix::LARGEST_REPETITIONS;
 pub use merge_sweeps::{MergedSweep, merge_sweeps};
 pub use plan::{Plan, Prices};
 pub use power::Power;
-pub use pricing::{Paid, Pilot, Piloted, law_of, pay};
+pub use pricing::{Paid, Pilot, Piloted, law_of, pay, run_pilots};
 pub use processes::MESSAGES;
 pub use profile::Profile;
 pub use ranking::{ImageRanking, Place, Ranking, ranking};

@@ -1,26 +1,38 @@
-//! The price of an accuracy, estimated by a pilot: some seeds are rendered and timed, and their images are compared
-//! with each other. No reference is needed. The pilot's seeds belong to no image, so a render that is paid for later is
-//! not judged by the samples that set its price.
+//! The price of an accuracy, estimated by a pilot: some seeds are rendered, and their images are compared with each other.
+//! No reference is needed. The pilot's seeds belong to no image, so a render that is paid for later is not judged by the
+//! samples that set its price.
+//!
+//! Times come from other runs: all pilots take turns in adjacent pairs ([`super::pairs`]), in several processes, because a
+//! process has one memory layout for its whole life.
 
-use super::Progress;
+use super::pairs::{Contestant, USUAL_PAIRS, run_pairs};
+use super::{CellJob, PointJob, Progress, SceneVersion};
 use crate::analysis::Estimate;
+use crate::analysis::adjacent_pairs::{by_process, paired_ratio};
 use crate::analysis::jackknife::SeedCurves;
 use crate::analysis::mean::geometric_interval;
 use crate::analysis::price::{Law, Renderer};
+use crate::analysis::quantile::median;
+use crate::analysis::ranking::{Turn, ratios_in_pairs};
 use crate::analysis::tail::{Tail, tail};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
 use crate::lab::Lab;
 use crate::measure::{LARGEST_BYTES, Rounds, Settings, TimingConcerns};
 use crate::sampling::{REFERENCE_SEEDS, is_spread};
+use std::collections::BTreeMap;
 
 const PILOT_SEEDS: u64 = REFERENCE_SEEDS >> 1;
 /// Points of each seed's curve, each with twice the samples of the one before: enough to fit an exponent.
 const POINTS: u32 = 5;
+/// Processes in which the times are measured: one more than an interval needs.
+const PROCESSES: u32 = 4;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// The pilot of one renderer.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Pilot {
-    pub spp: u32,
+    /// Its samples per pixel are those of each seed.
+    pub settings: Settings,
     pub seeds: u32,
 }
 
@@ -30,6 +42,19 @@ pub struct Piloted {
     /// depends on whether the pilot met it.
     pub tail: Tail,
     pub doubts: TimingConcerns,
+    /// Seconds for one sample in every pixel, by process and pair.
+    per_spp: BTreeMap<Turn, f64>,
+}
+
+impl Piloted {
+    /// Seconds of this renderer over seconds of the other one until the RMSE falls to that goal. The ratio of times comes
+    /// from pairs of runs, the numbers of samples from independent seeds.
+    pub fn seconds_over(&self, other: &Self, rmse: f64, level: f64) -> Option<Estimate> {
+        let ratios = by_process(ratios_in_pairs(&self.per_spp, &other.per_spp));
+        let times = paired_ratio(&ratios, level)?.ratio;
+        let [own, others] = [self, other].map(|piloted| piloted.renderer.price(rmse).map(|price| price.spp));
+        times.times(&own?.times(&others?.inverse()?)?)
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,107 +73,106 @@ fn with_seed(settings: &Settings, spp: u32, seed: u64) -> Settings {
     Settings { spp, spec: Spec { seed, ..settings.spec.clone() }, ..settings.clone() }
 }
 
-impl Pilot {
-    /// Renders the pilot. Intervals have the confidence `level`.
-    pub fn run(&self, lab: &Lab, settings: &Settings, level: f64, progress: &dyn Progress) -> Result<Piloted> {
-        let mut run = self.begin(lab, settings, 1)?;
-        self.render(lab, std::slice::from_mut(&mut run), progress)?;
-        run.end(level)
-    }
-
-    /// Renders the pilots of several settings side by side: each seed by all of them, in alternating order, so that drift
-    /// of the machine's speed affects them equally.
-    pub fn run_side_by_side(
-        &self,
-        lab: &Lab,
-        each: &[Settings],
-        level: f64,
-        progress: &dyn Progress,
-    ) -> Result<Vec<Piloted>> {
-        let runs = each.iter().map(|settings| self.begin(lab, settings, each.len()));
-        let mut runs = runs.collect::<Result<Vec<_>>>()?;
-        self.render(lab, &mut runs, progress)?;
-        runs.into_iter().map(|run| run.end(level)).collect()
-    }
-
-    /// Checks the settings, one of `many`.
-    fn begin(self, lab: &Lab, settings: &Settings, many: usize) -> Result<PilotRun> {
-        let law = law_of(&settings.spec.sampler);
-        let fewest = lab.prepare(with_seed(settings, self.spp, PILOT_SEEDS))?.fewest_spp();
-        if !self.spp.is_multiple_of(fewest) {
-            let problem = format!("is not a multiple of {fewest}, the fewest samples that make an image");
-            return Err(InputError::new("pilot-spp", self.spp.to_string(), problem).into());
+/// Renders the pilots, and times them side by side. Intervals have the confidence `level`. A pilot that fails leaves the
+/// others alone.
+pub fn run_pilots(lab: &Lab, pilots: &[Pilot], level: f64, progress: &dyn Progress) -> Result<Vec<Result<Piloted>>> {
+    let mut runs: Vec<Result<PilotRun>> = pilots.iter().map(|pilot| PilotRun::new(lab, pilot, pilots.len())).collect();
+    let seeds = pilots.iter().map(|pilot| u64::from(pilot.seeds)).sum();
+    progress.begin("pilot", seeds);
+    let mut done = 0;
+    for run in &mut runs {
+        let Ok(of) = run else { continue };
+        let rendered = (0..of.pilot.seeds).try_for_each(|seed| {
+            of.render(lab, PILOT_SEEDS + u64::from(seed))?;
+            done += 1;
+            progress.advance(done);
+            Ok(())
+        });
+        if let Err(error) = rendered {
+            *run = Err(error);
         }
-        let count = if law == Law::Independent { 1 } else { POINTS };
-        let pixels = u64::from(settings.spec.width) * u64::from(settings.spec.height);
-        let images = u64::from(self.seeds) * u64::from(count) * many as u64;
-        let bytes = pixels * images * size_of::<[f64; 3]>() as u64;
-        if bytes > LARGEST_BYTES {
-            let problem = format!("keeps {} GiB of images in memory", bytes >> 30);
-            let error = InputError::new("pilot-seeds", self.seeds.to_string(), problem);
-            let allowed = format!("at most {} GiB, by fewer seeds or a smaller --size", LARGEST_BYTES >> 30);
-            return Err(error.allowed(allowed).into());
-        }
-        let halved = (0..count).map(|times| self.spp >> times).take_while(|spp| spp.is_multiple_of(fewest) && *spp > 0);
-        let mut points: Vec<u32> = halved.collect();
-        points.reverse();
-        // The first run of a process is slower than the rest.
-        lab.prepare(with_seed(settings, fewest, PILOT_SEEDS))?.run(None)?;
-        let images = vec![Vec::new(); points.len()];
-        Ok(PilotRun {
-            settings: settings.clone(),
-            law,
-            points,
-            images,
-            per_spp: Vec::new(),
-            doubts: TimingConcerns::default(),
-        })
     }
-
-    fn render(self, lab: &Lab, runs: &mut [PilotRun], progress: &dyn Progress) -> Result<()> {
-        progress.begin("pilot", u64::from(self.seeds) * runs.len() as u64);
-        let mut done = 0;
-        for seed in 0..self.seeds {
-            let mut order: Vec<&mut PilotRun> = runs.iter_mut().collect();
-            if seed % 2 == 1 {
-                order.reverse();
-            }
-            for run in order {
-                run.render(lab, self.spp, PILOT_SEEDS + u64::from(seed))?;
-                done += 1;
-                progress.advance(done);
-            }
-        }
-        progress.end();
-        Ok(())
-    }
+    progress.end();
+    let mut ready: Vec<&mut PilotRun> = runs.iter_mut().filter_map(|run| run.as_mut().ok()).collect();
+    time(lab, &mut ready, progress)?;
+    Ok(runs.into_iter().map(|run| run?.end(level)).collect())
 }
 
-/// The pilot of one renderer, and what its seeds have shown so far.
+/// Times the pilots in adjacent pairs, in several processes.
+fn time(lab: &Lab, runs: &mut [&mut PilotRun], progress: &dyn Progress) -> Result<()> {
+    progress.begin("pilot times", u64::from(PROCESSES));
+    let program = std::env::current_exe().map_err(|e| format!("finding this program: {e}"));
+    for process in 0..PROCESSES {
+        let mut group = Vec::new();
+        for (number, run) in runs.iter().enumerate() {
+            let Settings { spp, .. } = run.pilot.settings;
+            let settings = with_seed(&run.pilot.settings, spp, PILOT_SEEDS + u64::from(process));
+            let scene = SceneVersion::of(&lab.prepare(settings.clone())?);
+            let points = vec![PointJob { cell: number.to_string(), spp, image: None }];
+            let job = CellJob { points, repetition: process, settings, scene, ..CellJob::default() };
+            group.push(Contestant::new(job, program.clone(), None));
+        }
+        for (at, row) in run_pairs(&mut group, USUAL_PAIRS, "price", process) {
+            let Some(seconds) = row.makespan_s.filter(|_| row.error.is_empty()) else {
+                return Err(Error::Check(format!("the pilot's run failed: {}", row.error)));
+            };
+            let run = &mut *runs[at];
+            run.per_spp.insert((process, row.pair), seconds / f64::from(row.spp));
+            run.doubts.add(&row.warnings);
+        }
+        progress.advance(u64::from(process) + 1);
+    }
+    progress.end();
+    Ok(())
+}
+
+/// The pilot of one renderer, and what its runs have shown so far.
 struct PilotRun {
-    settings: Settings,
+    pilot: Pilot,
     law: Law,
     points: Vec<u32>,
     /// The images of each point, seed by seed.
     images: Vec<Vec<Vec<f64>>>,
-    per_spp: Vec<f64>,
+    per_spp: BTreeMap<Turn, f64>,
     doubts: TimingConcerns,
 }
 
 impl PilotRun {
-    fn render(&mut self, lab: &Lab, spp: u32, seed: u64) -> Result<()> {
-        let pixels = u64::from(self.settings.spec.width) * u64::from(self.settings.spec.height);
-        let mut rounds = Rounds::new(lab.prepare(with_seed(&self.settings, spp, seed))?)?;
-        let (mut seconds, mut samples) = (0.0, 0);
+    /// Checks a pilot, one of `many`.
+    fn new(lab: &Lab, pilot: &Pilot, many: usize) -> Result<Self> {
+        let Pilot { settings, seeds } = pilot;
+        let law = law_of(&settings.spec.sampler);
+        let fewest = lab.prepare(with_seed(settings, settings.spp, PILOT_SEEDS))?.fewest_spp();
+        if !settings.spp.is_multiple_of(fewest) {
+            let problem = format!("is not a multiple of {fewest}, the fewest samples that make an image");
+            return Err(InputError::new("pilot-spp", settings.spp.to_string(), problem).into());
+        }
+        let count = if law == Law::Independent { 1 } else { POINTS };
+        let pixels = u64::from(settings.spec.width) * u64::from(settings.spec.height);
+        let images = u64::from(*seeds) * u64::from(count) * many as u64;
+        let bytes = pixels * images * size_of::<[f64; 3]>() as u64;
+        if bytes > LARGEST_BYTES {
+            let problem = format!("keeps {} GiB of images in memory", bytes >> 30);
+            let error = InputError::new("pilot-seeds", seeds.to_string(), problem);
+            let allowed = format!("at most {} GiB, by fewer seeds or a smaller --size", LARGEST_BYTES >> 30);
+            return Err(error.allowed(allowed).into());
+        }
+        let halved =
+            (0..count).map(|times| settings.spp >> times).take_while(|spp| spp.is_multiple_of(fewest) && *spp > 0);
+        let mut points: Vec<u32> = halved.collect();
+        points.reverse();
+        let images = vec![Vec::new(); points.len()];
+        let (per_spp, doubts) = (BTreeMap::new(), TimingConcerns::default());
+        Ok(Self { pilot: pilot.clone(), law, points, images, per_spp, doubts })
+    }
+
+    fn render(&mut self, lab: &Lab, seed: u64) -> Result<()> {
+        let settings = &self.pilot.settings;
+        let mut rounds = Rounds::new(lab.prepare(with_seed(settings, settings.spp, seed))?)?;
         for (&spp, images) in self.points.iter().zip(&mut self.images) {
-            let times = rounds.extend_to(spp, None)?;
-            seconds += times.makespan_s;
-            samples += times.paths;
+            rounds.extend_to(spp, None)?;
             images.push(rounds.film().image().pixels.into_flattened());
         }
-        self.per_spp.push(seconds * pixels as f64 / samples as f64);
-        let warnings: Vec<String> = rounds.outcome().warnings.iter().map(ToString::to_string).collect();
-        self.doubts.add(&warnings.join(";"));
         Ok(())
     }
 
@@ -157,12 +181,15 @@ impl PilotRun {
         let at: Vec<f64> = points.iter().map(|&spp| f64::from(spp)).collect();
         let seen: Vec<Vec<&[f64]>> = images.iter().map(|of| of.iter().map(Vec::as_slice).collect()).collect();
         let curves = SeedCurves::of_images(&at, &seen);
-        let seconds: Option<Estimate> = geometric_interval(&per_spp, level);
+        // A process is one value, however many runs it has.
+        let of_processes = by_process(per_spp.iter().map(|((process, _), seconds)| (*process, *seconds)));
+        let medians: Option<Vec<f64>> = of_processes.iter().map(|own| median(own)).collect();
+        let seconds = medians.and_then(|medians| geometric_interval(&medians, level));
         match curves.zip(seconds).zip(images.last().and_then(|of| tail_over_seeds(of))) {
             Some(((curves, seconds_per_spp), tail)) => {
-                Ok(Piloted { renderer: Renderer { curves, law, seconds_per_spp }, tail, doubts })
+                Ok(Piloted { renderer: Renderer { curves, law, seconds_per_spp }, tail, doubts, per_spp })
             }
-            None => Err(Error::Check("the pilot's seeds give no estimate of error and time".to_string())),
+            None => Err(Error::Check("the pilot gives no estimate of error and time".to_string())),
         }
     }
 }
