@@ -133,11 +133,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     let each = if is_comparison { unbiased(lab, &asked).collect() } else { vec![asked] };
     lab.prepare(each[0].clone())?.remarks().iter().for_each(|remark| console.note(remark));
     let own = |settings: &Settings| Pilot { settings: settings.clone(), seeds: arguments.pilot_seeds };
-    let mut pilots: Vec<Pilot> = each.iter().map(own).collect();
-    pilots.extend(if is_comparison { Vec::new() } else { smaller_pilots(lab, arguments, &each[0])? });
-    let mut found = run_pilots(lab, &pilots, LEVEL, console)?;
-    let others = found.split_off(each.len());
-    let found = found.into_iter().collect::<Result<Vec<Piloted>>>()?;
+    let pilots: Vec<Pilot> = each.iter().map(own).collect();
+    let smaller = if is_comparison { Vec::new() } else { smaller_pilots(lab, arguments, &each[0])? };
+    let (found, others) = run_pilots(lab, &pilots, &smaller, LEVEL, console)?;
     let (mut priced, mut texts, mut doubts) = (Vec::new(), Vec::new(), TimingConcerns::default());
     for (settings, piloted) in each.iter().zip(&found) {
         let rows = price(lab, arguments, settings, piloted, console)?;
@@ -158,8 +156,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
         texts.push(ranking(&arguments.rmse, &priced));
     } else if let Some(first) = priced.first() {
         // A pilot may have too few samples for a law; that estimator is then left out.
-        let others = pilots[1..].iter().zip(others).filter_map(|(pilot, other)| {
-            let (name, other) = (pilot.settings.spec.estimator.clone(), other.ok()?);
+        let others = smaller.iter().zip(others).filter_map(|(pilot, other)| {
+            let (name, other) = (pilot.settings.spec.estimator.clone(), other?);
             let seconds = other.renderer.price(first.rmse)?.seconds;
             Some((name, seconds, other.seconds_over(&found[0], first.rmse, LEVEL)?))
         });

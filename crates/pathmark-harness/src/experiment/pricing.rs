@@ -73,29 +73,33 @@ fn with_seed(settings: &Settings, spp: u32, seed: u64) -> Settings {
     Settings { spp, spec: Spec { seed, ..settings.spec.clone() }, ..settings.clone() }
 }
 
-/// Renders the pilots, and times them side by side. Intervals have the confidence `level`. A pilot that fails leaves the
-/// others alone.
-pub fn run_pilots(lab: &Lab, pilots: &[Pilot], level: f64, progress: &dyn Progress) -> Result<Vec<Result<Piloted>>> {
-    let mut runs: Vec<Result<PilotRun>> = pilots.iter().map(|pilot| PilotRun::new(lab, pilot, pilots.len())).collect();
-    let seeds = pilots.iter().map(|pilot| u64::from(pilot.seeds)).sum();
-    progress.begin("pilot", seeds);
+/// Renders the pilots, and times them side by side. Intervals have the confidence `level`. Those of `others` may fail, and
+/// are `None` then.
+pub fn run_pilots(
+    lab: &Lab,
+    pilots: &[Pilot],
+    others: &[Pilot],
+    level: f64,
+    progress: &dyn Progress,
+) -> Result<(Vec<Piloted>, Vec<Option<Piloted>>)> {
+    let own = pilots.iter().map(|pilot| PilotRun::new(lab, pilot, pilots.len()));
+    let mut own = own.collect::<Result<Vec<PilotRun>>>()?;
+    let mut others: Vec<Option<PilotRun>> =
+        others.iter().map(|pilot| PilotRun::new(lab, pilot, others.len()).ok()).collect();
+    let mut runs: Vec<&mut PilotRun> = own.iter_mut().chain(others.iter_mut().flatten()).collect();
+    progress.begin("pilot", runs.iter().map(|run| u64::from(run.pilot.seeds)).sum());
     let mut done = 0;
     for run in &mut runs {
-        let Ok(of) = run else { continue };
-        let rendered = (0..of.pilot.seeds).try_for_each(|seed| {
-            of.render(lab, PILOT_SEEDS + u64::from(seed))?;
+        for seed in 0..run.pilot.seeds {
+            run.render(lab, PILOT_SEEDS + u64::from(seed))?;
             done += 1;
             progress.advance(done);
-            Ok(())
-        });
-        if let Err(error) = rendered {
-            *run = Err(error);
         }
     }
     progress.end();
-    let mut ready: Vec<&mut PilotRun> = runs.iter_mut().filter_map(|run| run.as_mut().ok()).collect();
-    time(lab, &mut ready, progress)?;
-    Ok(runs.into_iter().map(|run| run?.end(level)).collect())
+    time(lab, &mut runs, progress)?;
+    let own = own.into_iter().map(|run| run.end(level)).collect::<Result<Vec<Piloted>>>()?;
+    Ok((own, others.into_iter().map(|run| run?.end(level).ok()).collect()))
 }
 
 /// Times the pilots in adjacent pairs, in several processes.
@@ -215,4 +219,36 @@ pub fn pay(lab: &Lab, settings: &Settings, spp: u32, progress: &dyn Progress) ->
     let (first, second) = (images[0].pixels.as_flattened(), images[1].pixels.as_flattened());
     let squares: f64 = first.iter().zip(second).map(|(a, b)| (a - b) * (a - b)).sum();
     Ok(Paid { seconds, rmse: (0.5 * squares / first.len() as f64).sqrt() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn piloted(scale: f64, of_process: impl Fn(u32) -> f64) -> Piloted {
+        let curves: Vec<_> = [0.99, 1.0, 1.01].iter().map(|factor| vec![(16.0, factor * scale / 16.0)]).collect();
+        let turns = (0..4).flat_map(|process| (0..2).map(move |pair| (process, Some(pair))));
+        let per_spp: BTreeMap<Turn, f64> = turns.map(|turn| (turn, of_process(turn.0))).collect();
+        let medians: Vec<f64> = (0..4).map(of_process).collect();
+        let renderer = Renderer {
+            curves: SeedCurves::of_errors(&curves).unwrap(),
+            law: Law::Independent,
+            seconds_per_spp: geometric_interval(&medians, 0.95).unwrap(),
+        };
+        Piloted { renderer, tail: Tail::default(), doubts: TimingConcerns::default(), per_spp }
+    }
+
+    /// The machine is up to four times slower in some processes, for both renderers alike: their seconds are unknown within
+    /// a factor, and their ratio is known. Half the variance and three times the seconds a sample: 3/2.
+    #[test]
+    fn what_slows_both_leaves_their_ratio() {
+        let slow = |process: u32| f64::from(process + 1);
+        let layout = |process: u32| 1.0 + 0.01 * (f64::from(process) - 1.5);
+        let (own, other) = (piloted(1.0, |process| 3.0 * slow(process) * layout(process)), piloted(2.0, slow));
+        let seconds = other.renderer.price(0.1).unwrap().seconds;
+        assert!(seconds.interval.high > 2.0 * seconds.value, "{seconds:?}");
+        let ratio = own.seconds_over(&other, 0.1, 0.95).unwrap();
+        assert!((ratio.value - 1.5).abs() < 1e-3, "{ratio:?}");
+        assert!(ratio.interval.low > 1.4 && ratio.interval.high < 1.6, "{ratio:?}");
+    }
 }
