@@ -43,11 +43,12 @@ ours_mitsuba() {
 theirs_mitsuba() {
   local seconds=0
   for half in 0 1; do
-    seconds=$(python3 experiments/peers/mitsuba_ball.py "$triangles" 256 $spp $((100 * (2 * $1 + half))) "$work/theirs$half.pfm")
+    seconds=$(python3 experiments/peers/mitsuba_ball.py "$triangles" 256 $spp $((100 * (2 * $1 + half))) "$work/theirs$half.pfm" |
+      sed -n 's/^seconds = //p')
   done
   cost theirs "$seconds"
 }
-cost() { "$program" compare "$work/${1}0.pfm" "$work/${1}1.pfm" --json | value mse | awk -v seconds="$2" '{ print $1 * seconds }'; }
+cost() { "$program" image compare "$work/${1}0.pfm" "$work/${1}1.pfm" --json | value mse | awk -v seconds="$2" '{ print $1 * seconds }'; }
 
 if [[ $peer == embree ]]; then
   g++ -O3 -march=native experiments/peers/embree.cpp -lembree3 -o "$work/peer"

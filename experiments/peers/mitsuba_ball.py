@@ -3,12 +3,14 @@
 
     experiments/peers/mitsuba_ball.py N SIZE SPP SEED OUT.pfm
 
-N triangles at least, as in experiments/scenes/bumpy-ball.toml; needs `pip install mitsuba numpy` and LLVM (Debian's libllvm19, named by
-DRJIT_LIBLLVM_PATH; 15 cannot compile it). One thread renders, with the variant llvm_ad_rgb and the integrator `path`. Prints the seconds of a second rendering, after the first has compiled its kernels, and writes that
-image, of SEED + 1.
+N triangles at least, as in experiments/scenes/bumpy-ball.toml; needs `pip install mitsuba numpy` and LLVM (Debian's
+libllvm19, named by DRJIT_LIBLLVM_PATH; 15 cannot compile it). MITSUBA_VARIANT=scalar_rgb needs no LLVM and is slower. One
+thread renders, with the integrator `path`. Prints `seconds = ...` of a second rendering, after the first has compiled its
+kernels, and writes that image, of SEED + 1.
 """
 
 import math
+import os
 import sys
 import time
 
@@ -16,7 +18,7 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-mi.set_variant("llvm_ad_rgb")
+mi.set_variant(os.environ.get("MITSUBA_VARIANT", "llvm_ad_rgb"))
 dr.set_thread_count(1)
 
 wanted, size, spp, seed, out = int(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3]), int(sys.argv[4]), sys.argv[5]
@@ -91,5 +93,5 @@ def render(seed):
 render(seed)
 begin = time.perf_counter()
 image = render(seed + 1)
-print(f"{time.perf_counter() - begin:.4f}")
+print(f"seconds = {time.perf_counter() - begin:.4f}")
 mi.Bitmap(image).write(out)

@@ -30,6 +30,7 @@ mod prose;
 mod rounds;
 mod samplers;
 mod scene_identity;
+mod scene_keys;
 #[path = "../support/scene_text.rs"]
 mod scene_text;
 mod schedule_invariance;

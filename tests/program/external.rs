@@ -49,6 +49,27 @@ fn its_image_is_measured_and_its_process_timed() {
     }
 }
 
+/// A program may tell the seconds of its rendering, so that its start and its writing are not its price.
+#[test]
+fn one_that_tells_its_seconds_is_believed_within_its_run() {
+    let telling =
+        |seconds: &str| BLACK.replace("sleep 0.05", &format!("sleep 0.05; echo start; echo seconds = {seconds}"));
+    let folder = tempfile::tempdir().unwrap();
+    let (rows, finished) = run(folder.path(), &table(&telling("0.02")));
+    finished.with_code(0);
+    for row in &rows {
+        assert_eq!(row["makespan_s"], "0.02");
+        assert!(row["kernel_build_s"].parse::<f64>().unwrap() >= 0.03, "{}", row["kernel_build_s"]);
+    }
+    for wrong in ["1000", "-1", "0", "nan", "soon"] {
+        let folder = tempfile::tempdir().unwrap();
+        let (rows, finished) = run(folder.path(), &table(&telling(wrong)));
+        finished.with_code(1);
+        let told = format!("external = other: tells `seconds = {wrong}`, which is no time within its");
+        assert!(rows.iter().all(|row| row["error"].contains(&told)), "{}", rows[0]["error"]);
+    }
+}
+
 #[test]
 fn a_program_that_is_not_there_is_said_and_stops_nothing() {
     for command in [

@@ -8,9 +8,9 @@
 //! scene = "cornell"                                     # what it renders, of which there is a reference
 //! spp = [64]
 //! seed = [1, 2, 3]
-//! # Optional: threads = 1, which it is to use (a note for the row); format = "pfm", the ending of {out}; curve = true and fewest-spp = 4, for
-//! # images at 4, 8, 16 ... samples on the way to each spp, each by a run of its own.
 //! ```
+//!
+//! `docs/external.md` explains all keys.
 
 use super::matrix::LARGEST_CELLS;
 use super::{Cell, CellPoint, Definition, Profile, Progress, SceneVersion};

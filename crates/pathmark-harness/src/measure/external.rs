@@ -15,7 +15,21 @@ pub struct ExternalRun {
     pub image: Image,
     /// Seconds from its start to its end, start-up and writing included.
     pub wall_s: f64,
+    /// Seconds of rendering as the program tells them: the last line of its output that begins with [`SECONDS`].
+    pub told_s: Option<f64>,
     pub cpu_s: Option<[f64; 2]>,
+}
+
+/// The beginning of the line by which a program tells the seconds of its rendering.
+const SECONDS: &str = "seconds =";
+
+/// The seconds that a program tells; refuses what is no time within its run.
+fn told_seconds(said: &[u8], wall_s: f64) -> std::result::Result<Option<f64>, String> {
+    let said = String::from_utf8_lossy(said);
+    let Some(value) = said.lines().rev().find_map(|line| line.trim().strip_prefix(SECONDS)) else { return Ok(None) };
+    let seconds = value.trim().parse().ok().filter(|seconds| *seconds > 0.0 && *seconds <= wall_s);
+    let value: String = value.trim().chars().take(40).collect();
+    seconds.map(Some).ok_or_else(|| format!("tells `{SECONDS} {value}`, which is no time within its {wall_s:.3} s"))
 }
 
 fn children_s() -> Option<[f64; 2]> {
@@ -62,15 +76,18 @@ pub fn run_external(name: &str, command: &[String], out: &Path) -> Result<Option
         Error::Input(error) => failed(format!("wrote an image that cannot be read: {}", error.problem)).into(),
         other => other,
     })?;
+    let told_s = told_seconds(&output.stdout, wall_s).map_err(failed)?;
     let cpu_s = before.zip(children_s()).map(|(before, after)| [after[0] - before[0], after[1] - before[1]]);
-    Ok(Some(ExternalRun { image, wall_s, cpu_s }))
+    Ok(Some(ExternalRun { image, wall_s, told_s, cpu_s }))
 }
 
 impl ExternalRun {
-    /// Its row: the measurements, for settings whose estimator is the program's name.
+    /// Its row: the measurements, for settings whose estimator is the program's name. If the program tells its seconds of
+    /// rendering, the rest of its run is the time to build its kernel.
     pub fn record(&self, settings: &Settings, scene: &Scene) -> Record {
         Record {
-            makespan_s: Some(self.wall_s),
+            makespan_s: Some(self.told_s.unwrap_or(self.wall_s)),
+            kernel_build_s: self.told_s.map(|told| self.wall_s - told),
             cpu_user_s: self.cpu_s.map(|cpu| cpu[0]),
             cpu_system_s: self.cpu_s.map(|cpu| cpu[1]),
             mean_radiance: Some(self.image.mean().iter().sum::<f64>() / 3.0),
