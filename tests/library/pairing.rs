@@ -17,7 +17,7 @@ const EXCEPTIONS: &[(&str, &str, &[&str])] = &[
         "conditions of a claim: samples or pixels asked for and run",
         &["own.parse::<f64>().ok()? / wanted"],
     ),
-    ("claims/measure.rs", "two columns of one row", &["number(row, above)? / number(row, below)?"]),
+    ("claims/measure.rs", "two columns of one row", &["sum / below"]),
     (
         "contenders.rs",
         "means over seeds; measured over predicted; seconds of one row over its samples",

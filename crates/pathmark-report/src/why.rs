@@ -8,6 +8,7 @@ use super::rows::Row;
 use super::rows::naming::joined;
 use super::rows::paired::{Pairs, medians};
 use super::rows::schedule::Schedule;
+use super::words;
 use crate::analysis::parallel_overhead::{Part, Run, decompose};
 use crate::error::Result;
 use crate::plot::number::fixed;
@@ -205,7 +206,7 @@ fn percent(told: &Estimated) -> String {
     let Estimated { value, interval, .. } = told.times(100.0);
     let interval = interval.map_or_else(
         || "no interval".to_string(),
-        |own| format!("{} to {}, {:.1} % confidence", fixed(own.low, 1), fixed(own.high, 1), 100.0 * own.level),
+        |own| format!("{} to {}, {} confidence", fixed(own.low, 1), fixed(own.high, 1), words::percent(own.level)),
     );
     format!("{} % ({interval})", fixed(value, 1))
 }

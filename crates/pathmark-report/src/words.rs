@@ -28,7 +28,12 @@ pub(super) fn ratio_bars<T: Into<Estimated>>(told: impl IntoIterator<Item = T>) 
 
 /// An interval with the confidence that it reaches: few values cannot reach 95 %.
 pub(super) fn with_level(interval: &Interval, digits: usize) -> String {
-    format!("{:.digits$} to {:.digits$} ({:.1} %)", interval.low, interval.high, interval.level * 100.0)
+    format!("{:.digits$} to {:.digits$} ({})", interval.low, interval.high, percent(interval.level))
+}
+
+/// A confidence as every text of the report tells it: `96.8 %`.
+pub(super) fn percent(level: f64) -> String {
+    format!("{:.1} %", at_least_percent(level))
 }
 
 /// The confidence of some intervals, in words for a caption: of medians, or of means over processes of pairs.
@@ -37,10 +42,10 @@ fn confidence(intervals: impl IntoIterator<Item = Interval>) -> String {
     levels.sort_by(f64::total_cmp);
     let levels = match levels.as_slice() {
         [] => return "no interval, for want of repetitions".to_string(),
-        [least, .., most] if least < most => format!("{least:.1} to {most:.1}"),
-        [level, ..] => format!("{level:.1}"),
+        [least, .., most] if least < most => format!("{least:.1} to {most:.1} %"),
+        [level, ..] => format!("{level:.1} %"),
     };
-    format!("interval of the typical value, {levels} % confidence")
+    format!("interval of the typical value, {levels} confidence")
 }
 
 /// A confidence in percent, rounded down to one decimal. Binomial sums may give a half as .4999999, which still counts
@@ -70,6 +75,7 @@ mod tests {
     #[test]
     fn a_confidence_is_not_told_larger_than_it_is() {
         assert_eq!([0.5 - 1e-12, 0.5, 0.9299, 0.96].map(at_least_percent), [50.0, 50.0, 92.9, 96.0]);
+        assert_eq!(percent(0.96875), "96.8 %");
     }
 
     #[test]

@@ -68,7 +68,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
         }
     }
     if let Some(out) = &arguments.out {
-        write_cases(out, &chosen, &outcomes)?;
+        write_cases(out, lab, &chosen, &outcomes)?;
         if !are_priced {
             write_guards(out, lab, &prices)?;
         }
@@ -91,7 +91,7 @@ fn folder_for_results(out: &Path) -> Result<Lock> {
     if !has_prices(out) || read_prices(&out.join(FOLDER).join(FILE))?.is_empty() {
         claim_guards(out, &mut files)?;
     }
-    cases_file::claim(out, &mut files)?;
+    claim_cases(out, &mut files)?;
     report::claim("out", out, &mut files)?;
     lock_folder(out, Sharing::Shared)
 }
@@ -176,10 +176,23 @@ pub(super) fn try_cases(cases: &[&'static Case], effort: Effort, console: &Conso
     Ok(outcomes)
 }
 
-/// Writes the outcomes of some cases into a folder of results.
-pub(super) fn write_cases(out: &Path, cases: &[&'static Case], outcomes: &[Outcome]) -> Result<()> {
+/// Adds the cases to the files that a command will write. Refuses a folder that has them.
+pub(super) fn claim_cases(out: &Path, files: &mut Files) -> Result<()> {
+    cases_file::claim(out, files)?;
+    files.renews("out", &out.join(cases_file::FOLDER).join(MACHINE), |path| read_run_file(path).is_ok())
+}
+
+/// Writes the outcomes of some cases into a folder of results, with the command and the machine.
+pub(super) fn write_cases(out: &Path, lab: &Lab, cases: &[&'static Case], outcomes: &[Outcome]) -> Result<()> {
     let rows: Vec<_> = cases.iter().zip(outcomes).map(|(case, outcome)| case_row(case, outcome)).collect();
+    write_machine(&out.join(cases_file::FOLDER), lab)?;
     cases_file::write(out, &rows)
+}
+
+fn write_machine(folder: &Path, lab: &Lab) -> Result<()> {
+    std::fs::create_dir_all(folder).map_err(|e| Error::system("creating", folder, e))?;
+    let program = lab.program().join(" ");
+    RunFile { program, ..RunFile::of_now(crate::command_line()) }.write(&folder.join(MACHINE))
 }
 
 /// Whether a folder of results has the price list of the guards already.
@@ -215,8 +228,6 @@ pub(super) fn claim_guards(out: &Path, files: &mut Files) -> Result<()> {
 /// Writes the price list into a folder of results, with the command and the machine.
 pub(super) fn write_guards(out: &Path, lab: &Lab, rows: &[PriceRow]) -> Result<()> {
     let folder = out.join(FOLDER);
-    std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
-    let program = lab.program().join(" ");
-    RunFile { program, ..RunFile::of_now(crate::command_line()) }.write(&folder.join(MACHINE))?;
+    write_machine(&folder, lab)?;
     write_prices(&folder.join(FILE), rows)
 }

@@ -5,7 +5,7 @@ use crate::atomic_file;
 use crate::digest;
 use crate::error::{InputError, Result};
 use crate::input::{parse, read_text};
-use crate::measure::Machine;
+use crate::measure::{Machine, utc_now};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::process;
@@ -36,6 +36,9 @@ pub struct RunFile {
     /// `None` without another program, and in older files.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sweep: Option<String>,
+    /// The time at which the file was written, before the first row; empty in older files.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub started_utc: String,
     /// The fewest rows of the finished sweep; `None` in older files.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rows: Option<u64>,
@@ -63,7 +66,7 @@ impl RunFile {
     /// The description of a measurement without a definition, on this machine.
     pub fn of_now(command: String) -> Self {
         let profile = Profile::Quick.name().to_string();
-        Self { command, profile, machine: Machine::look(), ..Self::default() }
+        Self { command, profile, started_utc: utc_now(), machine: Machine::look(), ..Self::default() }
     }
 
     pub fn write(&self, path: &Path) -> Result<()> {

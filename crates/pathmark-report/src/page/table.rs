@@ -4,6 +4,7 @@
 use super::block::Block;
 use crate::error::Result;
 use crate::estimated::Estimated;
+use crate::words::percent;
 use crate::{csv_file, plot};
 use std::path::Path;
 
@@ -44,7 +45,7 @@ impl TableCell {
             }
             Self::Estimated(Some(Estimated { value, interval: Some(interval), .. }), digits) => {
                 let [value, low, high] = [*value, interval.low, interval.high].map(|number| digits.show(number));
-                format!("{value}, {low} to {high} ({:.1} %)", 100.0 * interval.level)
+                format!("{value}, {low} to {high} ({})", percent(interval.level))
             }
         }
     }

@@ -48,15 +48,16 @@ pub(crate) fn identified<K: Ord, T: Copy>(
     Ok(found)
 }
 
-/// Ratios of a value between items of two lists that share a key. The key identifies the items of the second list.
+/// Ratios of a value between items of two lists that share a key, each with the item of the first list. The key identifies the
+/// items of the second list.
 pub(crate) fn ratios_by<K: Ord, T: Copy>(
     above: impl IntoIterator<Item = (K, T)>,
     below: impl IntoIterator<Item = (K, T)>,
     of_two: impl Fn(T, T) -> InputError,
     value: impl Fn(T) -> Option<f64>,
-) -> Result<Vec<f64>> {
+) -> Result<Vec<(T, f64)>> {
     let below = identified(below, of_two)?;
-    let ratio = |(key, item): (K, T)| Some(value(item)? / value(*below.get(&key)?)?);
+    let ratio = |(key, item): (K, T)| Some((item, value(item)? / value(*below.get(&key)?)?));
     Ok(above.into_iter().filter_map(ratio).collect())
 }
 
