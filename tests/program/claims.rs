@@ -13,7 +13,8 @@ const CLAIMS: usize = 79;
 /// A folder whose `out` has the rows of a small experiment under the name of a large one.
 fn with_rows() -> tempfile::TempDir {
     let folder = in_memory();
-    write_tiny(folder.path(), TINY);
+    let rows = TINY.replace("tiles:8x8", "rows").replace("static-blocks", "thread-per-row");
+    write_tiny(folder.path(), &rows);
     fs::rename(folder.path().join("tiny.toml"), folder.path().join("thread-scaling.toml")).unwrap();
     finish(pathmark(folder.path(), &["run", "thread-scaling.toml", "--out", "out"])).with_code(0);
     folder

@@ -28,17 +28,12 @@ pub(super) fn ratio_bars<T: Into<Estimated>>(told: impl IntoIterator<Item = T>) 
 
 /// An interval with the confidence that it reaches: few values cannot reach 95 %.
 pub(super) fn with_level(interval: &Interval, digits: usize) -> String {
-    format!("{:.digits$} to {:.digits$} ({})", interval.low, interval.high, percent(interval.level))
-}
-
-/// A confidence as every text of the report tells it: `96.8 %`.
-pub(super) fn percent(level: f64) -> String {
-    format!("{:.1} %", at_least_percent(level))
+    format!("{:.digits$} to {:.digits$} ({:.1} %)", interval.low, interval.high, interval.percent())
 }
 
 /// The confidence of some intervals, in words for a caption: of medians, or of means over processes of pairs.
 fn confidence(intervals: impl IntoIterator<Item = Interval>) -> String {
-    let mut levels: Vec<f64> = intervals.into_iter().map(|interval| at_least_percent(interval.level)).collect();
+    let mut levels: Vec<f64> = intervals.into_iter().map(|interval| interval.percent()).collect();
     levels.sort_by(f64::total_cmp);
     let levels = match levels.as_slice() {
         [] => return "no interval, for want of repetitions".to_string(),
@@ -46,12 +41,6 @@ fn confidence(intervals: impl IntoIterator<Item = Interval>) -> String {
         [level, ..] => format!("{level:.1} %"),
     };
     format!("interval of the typical value, {levels} confidence")
-}
-
-/// A confidence in percent, rounded down to one decimal. Binomial sums may give a half as .4999999, which still counts
-/// as a half.
-fn at_least_percent(level: f64) -> f64 {
-    (level * 1000.0 + 1e-6).floor() / 10.0
 }
 
 /// Names with their places: names of the table in its order and at their places in it, then unknown names in
@@ -71,12 +60,6 @@ pub(super) fn in_table_order<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_confidence_is_not_told_larger_than_it_is() {
-        assert_eq!([0.5 - 1e-12, 0.5, 0.9299, 0.96].map(at_least_percent), [50.0, 50.0, 92.9, 96.0]);
-        assert_eq!(percent(0.96875), "96.8 %");
-    }
 
     #[test]
     fn a_caption_tells_the_least_and_the_most_confidence() {

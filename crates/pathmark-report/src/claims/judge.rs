@@ -1,7 +1,7 @@
 //! The judgement of claims by the results in some folders.
 //!
 //! Each folder is a run. Rows of all runs at the report's own size are measured together, and each run alone: a verdict stands only if
-//! every run alone has it, too. Folders are read in the order of their paths, so the order in which they are named changes nothing.
+//! every run alone has it, too. A run of one or two units is not judged alone. Folders are read in the order of their paths, so the order in which they are named changes nothing.
 
 use super::condition::{Columns, Conditions};
 use super::definition::{Claim, Report, Test};
@@ -27,8 +27,8 @@ pub struct Answer<'a> {
     /// The files that the values come from.
     pub sources: Vec<PathBuf>,
     pub(super) found: Option<Measurement>,
-    /// The verdicts of the runs alone.
-    pub(super) runs: Vec<Verdict>,
+    /// The verdicts of the runs alone; none for a run that is too short for one.
+    pub(super) runs: Vec<Option<Verdict>>,
     /// How many more units would settle an open claim; if runs differ, in each run.
     pub(super) to_settle: Option<usize>,
     pub(super) age: Age,
@@ -141,16 +141,17 @@ fn verdict_of<'a>(parts: &[Part<'_>], blank: Answer<'a>, test: &Test) -> Result<
             differences.push(difference);
         }
     }
-    let runs: Vec<Verdict> = parts.iter().map(|part| Verdict::of(&part.alone, test.predicted)).collect();
+    let alone = |part: &Part<'_>| part.alone.stands_alone().then(|| Verdict::of(&part.alone, test.predicted));
+    let runs: Vec<Option<Verdict>> = parts.iter().map(alone).collect();
     let all = Verdict::of(&found, test.predicted);
-    let agree = runs.iter().all(|run| *run == all);
+    let agree = runs.iter().flatten().all(|run| *run == all);
     let verdict = match all {
         _ if !differences.is_empty() && !test.a_fortiori => Verdict::NotComparable,
         all if agree => all,
         _ => Verdict::Open,
     };
     let needed = |found: &Measurement| found.units_to_settle(test.predicted, test.level);
-    let of_runs = || parts.iter().filter(|part| Verdict::of(&part.alone, test.predicted) == Verdict::Open);
+    let of_runs = || parts.iter().filter(|part| alone(part) == Some(Verdict::Open));
     let to_settle = match verdict {
         Verdict::Open if agree => needed(&found),
         Verdict::Open => {

@@ -37,16 +37,21 @@ impl Answer<'_> {
 
     /// How many runs alone have the verdict: `in 3 of 3 runs`; empty if no run was compared with the prediction.
     pub fn in_runs(&self) -> String {
-        let of = |verdict: Verdict| self.runs.iter().filter(|run| **run == verdict).count();
-        let all = self.runs.len();
+        let of = |verdict: Verdict| self.runs.iter().filter(|run| **run == Some(verdict)).count();
+        let (all, judged) = (self.runs.len(), self.runs.iter().flatten().count());
         match self.verdict {
             Verdict::NotComparable | Verdict::NotAnswered | Verdict::Context => String::new(),
-            verdict if all < 2 || of(verdict) == all => format!("in {} of {}", of(verdict), counted(all, "run")),
+            _ if judged == 0 => format!("over {}, none long enough alone", counted(all, "run")),
+            verdict if of(verdict) == judged => {
+                let short = all - judged;
+                let others = if short == 0 { String::new() } else { format!(", {short} too short alone") };
+                format!("in {judged} of {}{others}", counted(judged, "run"))
+            }
             _ => {
                 let named = [Verdict::Confirmed, Verdict::Refuted, Verdict::Open].map(|verdict| (of(verdict), verdict));
                 let told = named.iter().filter(|(count, _)| *count > 0);
                 let told: Vec<String> = told.map(|(count, verdict)| format!("{verdict} in {count}")).collect();
-                format!("{} of {all} runs", told.join(", "))
+                format!("{} of {}", told.join(", "), counted(judged, "run"))
             }
         }
     }
@@ -54,7 +59,7 @@ impl Answer<'_> {
     /// How many more units would settle an open claim; empty if it is settled or that cannot be told.
     pub fn settled_by(&self) -> String {
         let Some((units, found)) = self.to_settle.zip(self.found) else { return String::new() };
-        let each = if self.runs.iter().all(|run| *run == Verdict::Open) { "" } else { " in each open run" };
+        let each = if self.runs.iter().flatten().all(|run| *run == Verdict::Open) { "" } else { " in each open run" };
         format!("about {}{each} would settle it", counted(units, &format!("more {}", found.noun)))
     }
 
@@ -71,7 +76,7 @@ impl Answer<'_> {
     /// The values that the report predicts.
     pub fn predicted(&self) -> String {
         let Ok(test) = self.claim.test() else { return "-".to_string() };
-        let short = |value: f64| number::short(value, 3);
+        let short = |value: f64| number::short(value, 6);
         match test.predicted {
             [low, high] if low == high => short(low),
             [low, f64::INFINITY] => format!("at least {}", short(low)),

@@ -176,8 +176,9 @@ impl<'a> Rows<'a> {
                 Measurement::exact(counts.iter().sum(), counts.len(), "row")
             }
             Kind::PairedRatio { column, over } => self.typical(self.ratios(over, column)?, Scale::Logarithmic),
-            Kind::Speedup { over } => {
-                let ratios = self.ratios(over, "makespan_s")?.into_iter();
+            Kind::Speedup { over, column } => {
+                let column = column.as_ref().map_or("makespan_s", |column| column);
+                let ratios = self.ratios(over, column)?.into_iter();
                 self.typical(ratios.map(|(item, ratio)| (item, 1.0 / ratio)), Scale::Logarithmic)
             }
             Kind::Exponent { x, y } => self.exponent(x, y),
@@ -275,7 +276,7 @@ impl<'a> Rows<'a> {
         if unit == Unit::Repetition {
             let points: Vec<(f64, f64)> = points.iter().map(|(_, x, y)| (*x, *y)).collect();
             let line = log_log(&points, level).map(|line| line.slope);
-            return Measurement::estimate(line, Rule::Line, points.len(), "process");
+            return Measurement::estimate(line, Rule::Line, points.len(), "point");
         }
         let lines = gathered(points.iter().map(|(item, x, y)| (unit.key(*item), (*x, *y))));
         let slopes = lines.values().filter_map(|points| Some(log_log(points, level)?.slope.value));

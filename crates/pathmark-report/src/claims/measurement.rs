@@ -1,11 +1,11 @@
 //! Measured values, each with its interval, the number of independent units behind it, and the rule that made the interval.
 
+use crate::analysis::adjacent_pairs::FEWEST_PROCESSES;
 use crate::analysis::mean::{Moments, fewest_values, geometric_interval, t_interval, t_quantile};
 use crate::plot::number::short;
 use crate::prelude::*;
-use crate::words::percent;
 
-/// Fewest units for which the extremes enclose the median with 95 % confidence: 1 - 2 / 2^6 is 96.9 %.
+/// Fewest units for which the extremes enclose the median with 95 % confidence: 1 - 2 / 2^6 is 0.969.
 const ENOUGH: usize = 6;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -127,7 +127,16 @@ impl Measurement {
             Interval::between(low, high, level)
         });
         let value = median(&all.iter().map(|one| one.value).collect::<Vec<_>>())?;
-        Some(Self { value, interval, units: all.iter().map(|one| one.units).sum(), ..first })
+        // Each run counts the same things again.
+        let counts = all.iter().map(|one| one.units);
+        let units = if first.rule == Rule::Exact { counts.max()? } else { counts.sum() };
+        Some(Self { value, interval, units, ..first })
+    }
+
+    /// Whether it can be compared with a prediction alone: two units have a t of 12.7, so only together with others they say
+    /// something.
+    pub(super) fn stands_alone(&self) -> bool {
+        self.rule != Rule::Mean || self.units >= FEWEST_PROCESSES
     }
 
     /// How many more units would decide, by their spread, on which side of the prediction the value lies; `None` if that cannot
@@ -156,8 +165,8 @@ impl Measurement {
 
     /// The confidence of the interval; empty for a value without error or without interval.
     pub(super) fn confidence(&self) -> String {
-        let level = self.interval.map(|interval| interval.level).filter(|level| *level < 1.0);
-        level.map_or_else(String::new, percent)
+        let uncertain = self.interval.filter(|interval| interval.level < 1.0);
+        uncertain.map_or_else(String::new, |interval| format!("{:.1} %", interval.percent()))
     }
 
     /// What value and interval are, and of how many units.

@@ -28,8 +28,8 @@ pub(super) enum Kind {
     Count { column: Column },
     /// The ratio of a column between paired rows.
     PairedRatio { column: Column, over: Conditions },
-    /// The baseline's time over the rows' own, in pairs.
-    Speedup { over: Conditions },
+    /// The baseline's time over the rows' own, in pairs: of the makespan, or of another column of seconds.
+    Speedup { over: Conditions, column: Option<Column> },
     /// The slope of log y against log x.
     Exponent { x: Column, y: Column },
     /// The slope of log RMSE against log spp, with an interval over seeds.
@@ -182,7 +182,10 @@ impl fmt::Display for Kind {
             }
             Self::Count { column } => write!(f, "sum of {column}"),
             Self::PairedRatio { column, over } => write!(f, "ratio of {column} to that of rows where {over}"),
-            Self::Speedup { over } => write!(f, "speedup against rows where {over}"),
+            Self::Speedup { over, column } => {
+                let of = column.as_ref().map_or_else(String::new, |column| format!(" of {column}"));
+                write!(f, "speedup{of} against rows where {over}")
+            }
             Self::Exponent { x, y } => write!(f, "exponent of {y} against {x}"),
             Self::RmseSlope {} => f.write_str("exponent of rmse against spp"),
             Self::MeanRatio { column, over } => write!(f, "ratio of mean {column} to that of rows where {over}"),

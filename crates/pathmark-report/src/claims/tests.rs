@@ -306,6 +306,24 @@ fn each_claim_appears_once_and_quotes_its_report() {
     }
 }
 
+/// Every change of a claim is told to readers.
+#[test]
+fn changes_are_listed_in_the_documentation() {
+    let text = include_str!("../../../../docs/reports.md");
+    let reports = Report::all().unwrap();
+    let changed = reports.iter().flat_map(|report| &report.claims).filter(|claim| !claim.changed.is_empty());
+    let listed = |id: u32| text.contains(&format!("* **Claim {id}**:")) || is_in_list(text, id);
+    let missing: Vec<u32> = changed.map(|claim| claim.id).filter(|id| !listed(*id)).collect();
+    assert_eq!(missing, Vec::<u32>::new());
+}
+
+/// Whether the line of new claims names this one.
+fn is_in_list(text: &str, id: u32) -> bool {
+    let list = text.split_once("* **New claims**: ").map_or("", |(_, list)| list);
+    let list = list.split_once('.').map_or("", |(list, _)| list).replace(" and ", ", ");
+    list.split(|c: char| c == ',' || c.is_whitespace()).any(|number| number.parse() == Ok(id))
+}
+
 /// Every query matches rows that a sweep of the quick profile or of the reports' profile will write.
 #[test]
 fn each_query_asks_for_rows_of_an_experiment() {
@@ -322,7 +340,7 @@ fn each_query_asks_for_rows_of_an_experiment() {
         }
         let own = rows.entry(experiment.clone()).or_insert_with(|| cells(&lab, experiment));
         let other = match kind {
-            Kind::PairedRatio { over, .. } | Kind::Speedup { over } | Kind::MeanRatio { over, .. } => Some(over),
+            Kind::PairedRatio { over, .. } | Kind::Speedup { over, .. } | Kind::MeanRatio { over, .. } => Some(over),
             _ => None,
         };
         for conditions in std::iter::once(wanted).chain(other) {
@@ -422,6 +440,17 @@ fn runs_that_agree_make_a_verdict() {
     let (verdict, _, notes, _) = of_folders(&[&all[0]], &format!("{SECONDS}\nat-most = 1.0005"));
     assert_eq!(verdict, Verdict::Open);
     assert!(notes[1].contains("more repetitions would settle it"), "{notes:?}");
+}
+
+/// Two repetitions decide nothing alone, however near to each other; those of three runs do.
+#[test]
+fn short_runs_are_judged_together() {
+    let all = [run(2, 1.0), run(2, 1.01), run(2, 1.02)];
+    let test = format!("{SECONDS}\nat-most = 1.5");
+    let (verdict, _, notes, _) = of_folders(&[&all[0], &all[1], &all[2]], &test);
+    assert_eq!((verdict, notes[0].as_str()), (Verdict::Confirmed, "over 3 runs, none long enough alone"));
+    let (verdict, _, notes, _) = of_folders(&[&all[0], &run(5, 1.0)], &test);
+    assert_eq!((verdict, notes[0].as_str()), (Verdict::Confirmed, "in 1 of 1 run, 1 too short alone"));
 }
 
 /// Rows of one run share the machine's condition on that day, so with six runs the runs are the units.

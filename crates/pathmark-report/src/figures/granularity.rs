@@ -145,7 +145,7 @@ fn in_words(found: &Metg) -> [String; 2] {
             let bracket = format!("between {} and {}", microseconds(between.0), microseconds(between.1));
             let interval = interval.map_or_else(String::new, |interval| {
                 let (low, high) = (microseconds(interval.low), microseconds(interval.high));
-                format!("; {low} to {high} ({:.0} %)", 100.0 * interval.level)
+                format!("; {low} to {high} ({:.1} %)", interval.percent())
             });
             let often = if *crossings > 1 { format!("; crosses one half {crossings} times") } else { String::new() };
             [microseconds(*seconds), format!("{bracket}{interval}{often}")]
