@@ -1,23 +1,54 @@
 //! `--output row-progress`: as `slots`, but after each row of its piece a worker counts it under a lock that all workers share, as report B
 //! (docs/reports.md) does to show its progress.
 //!
-//! Cost: one lock for each row of each piece. Report B also prints inside the lock, which is left out here.
+//! Cost: one lock for each row of each piece. Report B also prints inside the lock: `printed-progress`.
 
 use super::slots::Slots;
-use super::{Entry, Output};
+use super::{Delivery, Entry, Output};
+use crate::error::Result;
 use crate::film::{Bounds, Film, Piece};
 use crate::kernel::{Counts, Kernel};
+use std::fs::File;
+use std::io::Write;
 use std::sync::{Mutex, PoisonError};
+
+/// Characters of a full progress bar.
+const BAR: u64 = 70;
 
 pub(super) const ENTRY: Entry = Entry {
     name: "row-progress",
     about: "like slots, plus a progress counter behind a lock after each row (report B)",
-    new: |delivery| Ok(Box::new(RowProgress { slots: Slots::new(delivery)?, rows: Mutex::new(0) })),
+    new: |delivery| Ok(Box::new(RowProgress::new(delivery, None)?)),
 };
 
-struct RowProgress {
+/// The rows that all workers have finished, and where they are shown.
+struct Progress {
+    rows: u64,
+    all: u64,
+    shown: Option<File>,
+}
+
+pub(super) struct RowProgress {
     slots: Slots,
-    rows: Mutex<u64>,
+    progress: Mutex<Progress>,
+}
+
+impl RowProgress {
+    /// Counts rows, and shows their share in a file if there is one.
+    pub(super) fn new(delivery: Delivery, shown: Option<File>) -> Result<Self> {
+        let all = delivery.plan.pieces().iter().map(|piece| u64::from(piece.bounds.height())).sum();
+        Ok(Self { slots: Slots::new(delivery)?, progress: Mutex::new(Progress { rows: 0, all, shown }) })
+    }
+
+    fn count(&self) {
+        let mut progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
+        progress.rows += 1;
+        let Progress { rows, all, shown: Some(shown) } = &mut *progress else { return };
+        let filled = (BAR * *rows / *all) as usize;
+        let bar = format!("[{}>{}] {} %\r", "=".repeat(filled), " ".repeat(BAR as usize - filled), 100 * *rows / *all);
+        // A bar that cannot be shown is no reason to end a render.
+        let _ = shown.write_all(bar.as_bytes());
+    }
 }
 
 impl Output for RowProgress {
@@ -28,7 +59,7 @@ impl Output for RowProgress {
             for y in bounds.y0..bounds.y1 {
                 let row = Piece { bounds: Bounds { y0: y, y1: y + 1, ..*bounds }, samples: samples.clone() };
                 counts.add(&kernel.render(&row, tile));
-                *self.rows.lock().unwrap_or_else(PoisonError::into_inner) += 1;
+                self.count();
             }
             counts
         })
