@@ -4,8 +4,10 @@ use super::judge::Age;
 use super::measurement::{Measurement, Rule};
 use super::statistic::{Kind, Statistic};
 use super::*;
+use crate::cases_file::{self, CaseRow};
 use crate::error::Error;
 use crate::experiment::{Cell, Definition, Profile};
+use crate::guard_prices::{self, PriceRow};
 use crate::measure::Record;
 use crate::tests::{folder_of, row};
 use std::collections::BTreeMap;
@@ -297,7 +299,7 @@ fn each_claim_appears_once_and_quotes_its_report() {
     let reports = Report::all().unwrap();
     let mut ids: Vec<u32> = reports.iter().flat_map(|report| &report.claims).map(|claim| claim.id).collect();
     ids.sort_unstable();
-    assert_eq!(ids, (1..=79).collect::<Vec<u32>>());
+    assert_eq!(ids, (1..=85).collect::<Vec<u32>>());
     for report in &reports {
         let (_, text) = EXCERPTS.iter().find(|(letter, _)| *letter == report.report).expect("excerpts of each report");
         for claim in &report.claims {
@@ -402,7 +404,7 @@ const SECONDS: &str = "statistic = \"value\"\ncolumn = \"makespan_s\"";
 #[test]
 fn no_order_of_folders_changes_a_verdict() {
     let small = folder_of(&[], "", rows(9, |_, row| row.width = 4));
-    let all = [run(7, 1.0), run(8, 1.01), run(9, 2.0), small];
+    let all = [run(20, 1.0), run(21, 1.01), run(4, 2.0), small];
     let test = format!("{SECONDS}\nat-most = 1.5\ncomparable-if = {{ width = 8 }}");
     let mut orders = vec![Vec::new()];
     for _ in 0..all.len() {
@@ -421,7 +423,8 @@ fn no_order_of_folders_changes_a_verdict() {
     assert!(answers.iter().all(|answer| *answer == answers[0]), "{answers:?}");
     let (verdict, _, notes, found) = &answers[0];
     assert_eq!((*verdict, notes[0].as_str()), (Verdict::Open, "confirmed in 2, refuted in 1 of 3 runs"));
-    assert_eq!(found.unwrap().units, 24, "the rows of the other size are left out");
+    assert_eq!(found.unwrap().units, 45, "the rows of the other size are left out");
+    assert!(found.unwrap().interval.unwrap().high < 1.5, "the runs together would confirm it");
     // A folder that is named twice is one run.
     assert_eq!(of_folders(&[&all[0], &all[0]], &test), of_folders(&[&all[0]], &test));
     // Rows of another size answer only if there are no others.
@@ -525,4 +528,61 @@ fn a_bound_younger_than_its_rows_is_told() {
     let without =
         claim(&format!("experiment = \"e\"\nlevel = 0.95\n{SECONDS}\nat-most = 9.0")).replace("reason = \"w\"", "");
     assert!(Report::from_text("X.toml", &without).unwrap_err().to_string().contains("no reason"));
+}
+
+/// Hard cases and the price list of the guards judge claims in both directions; of several folders the hull of the intervals does.
+#[test]
+fn cases_and_guards_judge_both_ways() {
+    let folder = |failed: usize, error: f64| {
+        let out = tempfile::tempdir().unwrap();
+        let case = |id: &str, failed: usize| CaseRow {
+            id: id.to_string(),
+            tries: String::new(),
+            pass: failed == 0,
+            trials: 2,
+            failed,
+            variant: String::new(),
+            expected: String::new(),
+            found: String::new(),
+            skipped: String::new(),
+        };
+        cases_file::write(out.path(), &[case("C1", 0), case("C2", failed)]).unwrap();
+        let prices = out.path().join(guard_prices::FOLDER);
+        std::fs::create_dir(&prices).unwrap();
+        let row = PriceRow {
+            guard: "g".to_string(),
+            error: String::new(),
+            with: String::new(),
+            without: String::new(),
+            error_with: error,
+            error_with_low: 0.9 * error,
+            error_with_high: 1.1 * error,
+            error_without: 1.0,
+            error_without_low: 1.0,
+            error_without_high: 1.0,
+            operation: String::new(),
+            ns_with: None,
+            ns_without: None,
+            time_ratio: None,
+            time_ratio_low: None,
+            time_ratio_high: None,
+        };
+        guard_prices::write_prices(&prices.join(guard_prices::FILE), &[row]).unwrap();
+        out
+    };
+    let of = |folders: &[&tempfile::TempDir], evidence: &str| {
+        let reports = [Report::from_text("X.toml", &claim(&format!("level = 0.95\n{evidence}"))).unwrap()];
+        let paths: Vec<_> = folders.iter().map(|folder| folder.path().to_path_buf()).collect();
+        let answer = judge(&Lab::built_in(), &reports, &paths).unwrap().remove(0);
+        (answer.verdict, answer.found.map_or(0, |found| found.units))
+    };
+    let (good, bad) = (folder(0, 1e-3), folder(1, 1.0));
+    let cases = "statistic = \"case\"\nids = [\"C1\", \"C2\"]\nwithin = [0, 0]";
+    assert_eq!((of(&[&good], cases), of(&[&bad], cases)), ((Verdict::Confirmed, 2), (Verdict::Refuted, 2)));
+    assert_eq!(of(&[&good, &bad], cases), (Verdict::Open, 2));
+    assert_eq!(of(&[&good], &cases.replace("C2", "C3")).0, Verdict::NotAnswered);
+    let guard = "statistic = \"guard\"\nguard = \"g\"\ncolumn = \"error_with\"\nat-most = 0.1";
+    assert_eq!((of(&[&good], guard).0, of(&[&bad], guard).0), (Verdict::Confirmed, Verdict::Refuted));
+    assert_eq!(of(&[&bad, &good], guard).0, Verdict::Open);
+    assert_eq!(of(&[&good], &guard.replace("error_with", "time_ratio")).0, Verdict::NotAnswered, "not timed");
 }
