@@ -110,6 +110,6 @@ fn line(answer: &Answer<'_>) -> String {
     let notes = [answer.in_runs(), answer.settled_by(), answer.age().to_string()];
     let notes: Vec<String> = notes.into_iter().filter(|note| !note.is_empty()).collect();
     let more = [numbers, notes.join("; "), answer.why.clone()].into_iter().filter(|line| !line.is_empty());
-    let more: String = more.map(|line| format!("\n        {line}")).collect();
-    format!("{:>3} {}  {:15} {}{more}", claim.id, answer.report.report, answer.verdict.to_string(), claim.claim)
+    let head = format!("{:>3} {}  {:15} {}", claim.id, answer.report.report, answer.verdict.to_string(), claim.claim);
+    std::iter::once(head).chain(more).collect::<Vec<String>>().join("\n        ")
 }

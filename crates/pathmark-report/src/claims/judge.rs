@@ -5,7 +5,7 @@
 
 use super::condition::{Columns, Conditions};
 use super::definition::{Claim, Report, Test};
-use super::measure::{Evidence, Query, measure};
+use super::measure::{Evidence, Item, Query, measure};
 use super::measurement::Measurement;
 use super::statistic::{Cases, GuardColumn, GuardValue, Statistic};
 use super::verdict::Verdict;
@@ -169,7 +169,7 @@ fn verdict_of<'a>(parts: &[Part<'_>], blank: Answer<'a>, test: &Test) -> Result<
     Ok(Answer { verdict, why: differences.join("; "), sources, found: Some(found), runs, to_settle, age, ..blank })
 }
 
-/// What a test asks of rows: those at the report's own size, or all.
+/// The question of a test to rows: to those at the report's own size, or to all.
 fn query(test: &Test, is_comparable: bool) -> Option<Query<'_>> {
     let Statistic::OfRows { rows, unit, kind, .. } = &test.statistic else { return None };
     let also = Some(&test.comparable_if).filter(|_| is_comparable);
@@ -232,7 +232,7 @@ impl<'a> Library<'a> {
             let Some(alone) = measure(&[evidence], query)? else { continue };
             let own: Vec<_> = evidence.rows(rows).filter(|item| query.admits(item.columns)).collect();
             let columns: Vec<&Columns> = own.iter().map(|item| item.columns).collect();
-            let started: Vec<&str> = own.iter().map(|item| item.started_utc()).collect();
+            let started: Vec<&str> = own.iter().map(Item::started_utc).collect();
             let first = started.iter().min().filter(|first| !first.is_empty());
             return Ok(Some(Part {
                 source: self.out.join(name).join("records.csv"),

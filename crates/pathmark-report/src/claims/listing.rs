@@ -30,7 +30,7 @@ impl Answer<'_> {
         self.found.map_or_else(|| "-".to_string(), |found| found.shown())
     }
 
-    /// What value and interval are, and of how many units.
+    /// The rule that made value and interval, and the number of units.
     pub fn rule(&self) -> String {
         self.found.map_or_else(String::new, |found| found.rule_in_words())
     }

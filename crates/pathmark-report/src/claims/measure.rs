@@ -34,7 +34,7 @@ pub(super) struct Item<'a> {
     pub(super) columns: &'a Columns,
 }
 
-/// What a claim asks of rows.
+/// The question of a claim to rows.
 #[derive(Clone, Copy)]
 pub(super) struct Query<'a> {
     pub(super) rows: &'a Conditions,
@@ -284,6 +284,11 @@ impl<'a> Rows<'a> {
     }
 }
 
+/// A run, a cell and a turn.
+type Place<'a> = (usize, &'a str, Turn);
+
+type Valued<'a> = (Item<'a>, f64);
+
 /// The values of rows by repetition and pair, or the median of each cell's pairs by repetition, with one of their rows.
 fn per_turn<'a>(items: &[Item<'a>], column: &str, keeps_pairs: bool) -> Vec<(Turn, Item<'a>, f64)> {
     let place = |item: &Item<'a>| {
@@ -291,7 +296,7 @@ fn per_turn<'a>(items: &[Item<'a>], column: &str, keeps_pairs: bool) -> Vec<(Tur
         (run, row.cell.as_str(), (row.repetition, row.pair.filter(|_| keeps_pairs)))
     };
     let valued = items.iter().filter_map(|item| Some((place(item), (*item, number(item.columns, column)?))));
-    let of_turn = |((_, _, turn), all): ((usize, &str, Turn), Vec<(Item<'a>, f64)>)| {
+    let of_turn = |((_, _, turn), all): (Place<'_>, Vec<Valued<'a>>)| {
         Some((turn, all.first()?.0, median(&all.iter().map(|(_, value)| *value).collect::<Vec<f64>>())?))
     };
     gathered(valued).into_iter().filter_map(of_turn).collect()

@@ -2,7 +2,7 @@
 
 use crate::analysis::adjacent_pairs::FEWEST_PROCESSES;
 use crate::analysis::mean::{Moments, fewest_values, geometric_interval, t_interval, t_quantile};
-use crate::plot::number::short;
+use crate::plot::number::{fixed, is_plain, short};
 use crate::prelude::*;
 
 /// Fewest units for which the extremes enclose the median with 95 % confidence: 1 - 2 / 2^6 is 0.969.
@@ -31,7 +31,7 @@ pub(super) enum Scale {
     Logarithmic,
 }
 
-/// What value and interval are.
+/// The rule that made value and interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Rule {
     /// The median; its interval ends at order statistics.
@@ -157,9 +157,14 @@ impl Measurement {
             return short(self.value, DIGITS);
         }
         let place = |value: f64| libm::log10(value).floor();
-        let needed = place(low.abs().max(high.abs())) - place(0.25 * (high - low)) + 1.0;
-        let digits = DIGITS.max(needed.min(MOST_DIGITS) as usize);
-        let [value, low, high] = [self.value, low, high].map(|number| short(number, digits));
+        let largest = place(low.abs().max(high.abs()));
+        let last = place(0.25 * (high - low)).min(largest + 1.0 - DIGITS as f64).max(largest - MOST_DIGITS);
+        let all = [self.value, low, high];
+        let [value, low, high] = if all.into_iter().all(is_plain) {
+            all.map(|number| fixed(number, (-last).max(0.0) as usize))
+        } else {
+            all.map(|number| short(number, (largest - last + 1.0) as usize))
+        };
         format!("{value} ({low} to {high})")
     }
 
@@ -169,7 +174,7 @@ impl Measurement {
         uncertain.map_or_else(String::new, |interval| format!("{:.1} %", interval.percent()))
     }
 
-    /// What value and interval are, and of how many units.
+    /// The rule that made value and interval, and the number of units.
     pub(super) fn rule_in_words(&self) -> String {
         let units = counted(self.units, self.noun);
         match self.rule {
@@ -228,7 +233,11 @@ mod tests {
         let coarse = Measurement { value: 0.0432, interval: Interval::between(0.0395, 0.0493, 0.95), ..found };
         assert_eq!(coarse.shown(), "0.0432 (0.0395 to 0.0493)");
         let around = Measurement { value: 0.0, interval: Interval::between(-0.587, 0.587, 0.95), ..found };
-        assert_eq!(around.shown(), "0 (−0.587 to 0.587)");
+        assert_eq!(around.shown(), "0.000 (−0.587 to 0.587)");
+        let about_one = Measurement { value: 1.0, interval: Interval::between(0.9902, 1.009_89, 0.95), ..found };
+        assert_eq!(about_one.shown(), "1.000 (0.990 to 1.010)");
+        let tiny = Measurement { value: 1.99e-11, interval: Interval::between(1.93e-11, 2.05e-11, 0.95), ..found };
+        assert_eq!(tiny.shown(), "1.99×10⁻¹¹ (1.93×10⁻¹¹ to 2.05×10⁻¹¹)");
     }
 
     /// Values 1 apart from the bound with a deviation of 1: Student's half width of 7 is 0.925, that of 6 is 1.049.
