@@ -69,3 +69,28 @@ impl Output for RowProgress {
         Box::new(self.slots).films()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::{Decomposition, Sections};
+    use std::io::{Read, Seek};
+    use std::sync::Arc;
+
+    #[test]
+    fn each_row_shows_a_bar_and_the_last_one_is_full() {
+        let plan = Arc::new(Decomposition::parse("bands:2").unwrap().plan(8, 4, &(0..1)));
+        let films = Sections::new(8, 4, &[0..1]).unwrap();
+        let mut shown = tempfile::tempfile().unwrap();
+        let delivery = Delivery { plan, films, threads: 1 };
+        let progress = RowProgress::new(delivery, Some(shown.try_clone().unwrap())).unwrap();
+        (0..4).for_each(|_| progress.count());
+        let mut text = String::new();
+        shown.rewind().unwrap();
+        shown.read_to_string(&mut text).unwrap();
+        let bars: Vec<&str> = text.split_terminator('\r').collect();
+        assert_eq!(bars.iter().map(|bar| bar.split("] ").nth(1).unwrap()).collect::<Vec<_>>(), ["25 %", "50 %", "75 %", "100 %"]);
+        assert_eq!(bars[1], format!("[{}>{}] 50 %", "=".repeat(35), " ".repeat(35)));
+        assert_eq!(bars[3], format!("[{}>] 100 %", "=".repeat(70)));
+    }
+}
