@@ -10,6 +10,7 @@ pub mod balance;
 pub mod bootstrap;
 pub mod chi_square;
 pub mod confidence_sequence;
+pub mod crossed;
 pub mod error_ratio;
 pub mod fit;
 pub mod interval;

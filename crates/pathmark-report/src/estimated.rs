@@ -8,7 +8,7 @@ use crate::plot::{Dot, Point};
 use serde::Serialize;
 
 /// Confidence of every interval in the report.
-pub(super) const LEVEL: f64 = 0.95;
+pub const LEVEL: f64 = 0.95;
 
 /// A value and its interval, if there were enough values for one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -21,6 +21,7 @@ pub mod timeline;
 pub mod why;
 mod words;
 
+pub use estimated::LEVEL;
 pub use figures::{FIGURES, FigureEntry, check_figures, figure_of_serial};
 pub use page::benches::{BenchRow, write_benches};
 pub use page::block::Block;

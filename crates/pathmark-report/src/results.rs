@@ -92,13 +92,20 @@ impl Results {
         self.rows.first()
     }
 
-    /// Of the serial runs with the most jobs, the trace of the one with the median time; `None` if that trace was not
-    /// kept.
-    pub fn largest_serial_trace(&self) -> Result<Option<TraceFile>> {
+    /// The kept traces of the serial runs with the most jobs: see [`Self::traces_like_typical`].
+    pub fn largest_serial_traces(&self) -> Result<Vec<TraceFile>> {
         let serial: Vec<&Row> = self.rows().filter(|row| row.schedule.is_serial()).collect();
         let most = serial.iter().map(|row| row.jobs).max();
         let rows: Vec<&Row> = serial.into_iter().filter(|row| Some(row.jobs) == most).collect();
-        Self::typical(&rows).map_or(Ok(None), |row| self.trace(row))
+        self.traces_like_typical(&rows)
+    }
+
+    /// The kept traces of the rows that have the image and the pieces of the typical row; its own trace comes first.
+    pub(super) fn traces_like_typical(&self, rows: &[&Row]) -> Result<Vec<TraceFile>> {
+        let Some(typical) = Self::typical(rows) else { return Ok(Vec::new()) };
+        let is_like = |row: &Row| row.image == typical.image && row.decomposition == typical.decomposition;
+        let others = rows.iter().copied().filter(|row| is_like(row) && !std::ptr::eq(*row, typical));
+        std::iter::once(typical).chain(others).filter_map(|row| self.trace(row).transpose()).collect()
     }
 
     pub fn profile(&self) -> Profile {
