@@ -18,7 +18,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let first = *rows.first()?;
         let image = if series.is_empty() { first.scene.clone() } else { series };
         let times = values(&rows, |row| row.makespan_s);
-        Some(Line { image, first, seconds: Estimated::median(&times, results.stopping())?, times, rows })
+        Some(Line { image, first, seconds: Estimated::typical(&times, results.stopping())?, times, rows })
     });
     // A job's seconds include waiting for a processor, so with more workers than processors they do not show balance.
     let alone = |row: &Row| (row.workers_used? as usize <= processors).then_some(());

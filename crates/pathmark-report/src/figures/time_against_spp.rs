@@ -16,7 +16,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let cells = cells.map(|(spp, rows)| (spp, Repeats::of_rows(rows, |row| row.makespan_s)));
         // The fit compares them, so all come from the same repetitions.
         let times = in_common(cells.collect()).into_iter().filter_map(|(spp, seconds)| {
-            let seconds = Estimated::median(&seconds, results.stopping())?;
+            let seconds = Estimated::typical(&seconds, results.stopping())?;
             all.push(seconds);
             Some(seconds.above(f64::from(spp)))
         });
