@@ -16,6 +16,7 @@ pub mod fit;
 pub mod interval;
 pub mod jackknife;
 pub mod mean;
+pub mod measured_price;
 pub mod metg;
 pub mod mse;
 pub mod parallel_overhead;

@@ -134,6 +134,11 @@ impl Results {
         joined(self.image_parts.iter().map(|setting| label(setting, row)))
     }
 
+    /// [`Results::series_name`] among images of one scene.
+    pub(super) fn series_name_in_scene(&self, row: &Row) -> String {
+        joined(self.image_parts.iter().filter(|setting| setting.name != "scene").map(|setting| label(setting, row)))
+    }
+
     /// The properties in which the images differ, or the estimator if they do not.
     pub(super) fn image_name(&self, row: &Row) -> String {
         let series = self.series_name(row);
