@@ -1,6 +1,7 @@
 //! Cost and gain of an approximation: light lost, noise and doubtful pixels by the value of one axis, against rows in
 //! which the axis has its usual value.
 
+use crate::plot::Dot;
 use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
@@ -42,8 +43,8 @@ struct Cost {
     light: Estimated,
     rmse: Option<f64>,
     within: Option<f64>,
-    black: Option<f64>,
-    fireflies: Option<f64>,
+    black: Option<Estimated>,
+    fireflies: Option<Estimated>,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
@@ -64,27 +65,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let spp = most.entry(&cost.scene).or_default();
         *spp = cost.spp.max(*spp);
     }
-    let scenes: BTreeSet<&str> = costs.iter().map(|cost| cost.scene.as_str()).collect();
-    let row = |value: &String| {
-        let dot = |scene: &&str| {
-            let is_shown =
-                |cost: &&Cost| cost.value == *value && cost.scene == *scene && Some(&cost.spp) == most.get(scene);
-            let own = costs.iter().find(is_shown)?;
-            Some(own.light.times(100.0).dot())
-        };
-        DotRow::new(value, scenes.iter().map(dot).collect())
-    };
-    let mut plot = DotPlot::new(
-        format!("Light by {name}"),
-        Axis::linear(format!("mean radiance against {usual}, %")).including([100.0]),
-        values.iter().map(row).collect(),
-    )
-    .grouped(scenes.iter().copied());
-    plot.subtitle = results.workload();
-    plot.caption =
-        "Bars: 95 % interval over seeds, of ratios within a seed. Each scene at the most samples that were compared."
-            .to_string();
-    plot.guides = vec![(100.0, usual.clone())];
+    let shown = Shown { results, name, usual: &usual, values: &values, most: &most, costs: &costs };
+    let mut blocks = vec![Block::figure("bias", shown.light())];
+    blocks.extend(shown.share("fireflies", |cost| cost.fireflies));
+    blocks.extend(shown.share("black-pixels", |cost| cost.black));
     let is_shown = |cost: &&Cost| cost.value != usual && Some(&cost.spp) == most.get(cost.scene.as_str());
     let worst = costs.iter().filter(is_shown).max_by(|a, b| {
         let off = |cost: &Cost| (cost.light.value - 1.0).abs();
@@ -112,10 +96,97 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .estimated("light, %", Decimals(3), |cost| cost.light.times(100.0))
         .number("RMSE", Decimals(5), |cost| cost.rmse)
         .number("pixels within 0.05 of the display, %", Decimals(2), |cost| percent(cost.within))
-        .number("black pixels, %", Decimals(3), |cost| percent(cost.black))
-        .number("fireflies in a million pixels", Decimals(0), |cost| cost.fireflies.map(|share| 1e6 * share))
+        .number("black pixels, %", Decimals(3), |cost| percent(cost.black.map(|share| share.value)))
+        .estimated("fireflies in a million pixels", Decimals(0), |cost| cost.fireflies.map(|share| share.times(1e6)))
         .end();
-    Ok([Block::figure("bias", plot)].into_iter().chain(finding).chain([table]).collect())
+    Ok(blocks.into_iter().chain(finding).chain([table]).collect())
+}
+
+/// Changes of the light below this many percent are rounding.
+const ROUNDING: f64 = 1e-4;
+
+/// The results that the plots show.
+struct Shown<'a> {
+    results: &'a Results,
+    /// The axis.
+    name: &'a str,
+    usual: &'a str,
+    values: &'a [String],
+    /// The samples per pixel that are shown of each scene.
+    most: &'a BTreeMap<&'a str, u32>,
+    costs: &'a [Cost],
+}
+
+impl Shown<'_> {
+    fn cost(&self, value: &str, scene: &str) -> Option<&Cost> {
+        let spp = self.most.get(scene)?;
+        self.costs.iter().find(|cost| cost.value == value && cost.scene == scene && cost.spp == *spp)
+    }
+
+    /// The change of the light in percent. Its axis is logarithmic, so that a hundredth of a percent and half of the
+    /// light both have a place; lighter and darker are groups of their own.
+    fn light(&self) -> DotPlot {
+        let several = self.most.len() > 1;
+        let groups = self.most.keys().flat_map(|scene| ["lighter", "darker"].map(|side| (*scene, side)));
+        let groups: Vec<(&str, &str)> = groups.collect();
+        let dot = |value: &str, scene: &str, side: &str| {
+            let change = self.cost(value, scene)?.light.times(100.0);
+            let (own, sign) = (change.value - 100.0, if side == "lighter" { 1.0 } else { -1.0 });
+            if own * sign < ROUNDING {
+                return None;
+            }
+            let bar = change.bar().map(|(low, high)| [low, high].map(|end| sign * (end - 100.0)));
+            let bar = bar.map(|[a, b]| (a.min(b), a.max(b)));
+            let hollow = bar.is_none_or(|(low, _)| low <= 0.0);
+            Some(Dot { value: own.abs(), interval: bar, count: change.count, hollow })
+        };
+        let others = self.values.iter().filter(|value| *value != self.usual);
+        let row =
+            |value: &String| DotRow::new(value, groups.iter().map(|(scene, side)| dot(value, scene, side)).collect());
+        let axis = Axis::log(format!("change of the mean radiance against {}, %", self.usual));
+        let names =
+            groups.iter().map(|(scene, side)| if several { format!("{scene}, {side}") } else { (*side).to_string() });
+        let mut plot = DotPlot::new(format!("Light by {}", self.name), axis, others.map(row).collect()).grouped(names);
+        plot.subtitle = self.results.workload();
+        plot.caption = format!(
+            "Bars: 95 % interval over seeds, of ratios within a seed. Hollow: the interval contains no change. No dot: less than {ROUNDING} %. Each scene at {}.",
+            self.samples()
+        );
+        plot
+    }
+
+    fn samples(&self) -> String {
+        let of = |(scene, spp): (&&str, &u32)| {
+            if self.most.len() > 1 {
+                format!("{spp} samples per pixel ({scene})")
+            } else {
+                format!("{spp} samples per pixel")
+            }
+        };
+        let each: Vec<String> = self.most.iter().map(of).collect();
+        each.join(" and ")
+    }
+
+    /// A share of the pixels, in a million; `None` if no image has such pixels.
+    fn share(&self, stem: &'static str, of: fn(&Cost) -> Option<Estimated>) -> Option<Block> {
+        let dot = |value: &String, scene: &&str| Some(of(self.cost(value, scene)?)?.times(1e6).dot());
+        let row = |value: &String| DotRow::new(value, self.most.keys().map(|scene| dot(value, scene)).collect());
+        let rows: Vec<DotRow> = self.values.iter().map(row).collect();
+        if !rows.iter().flat_map(|row| row.dots.iter().flatten()).any(|dot| dot.value > 0.0) {
+            return None;
+        }
+        let (title, meaning) = if stem == "fireflies" {
+            ("Fireflies", "A firefly is brighter than the reference by more than 1, the display's white, in a channel.")
+        } else {
+            ("Black pixels", "In a black pixel every channel is 0.")
+        };
+        let axis = Axis::linear(format!("{} in a million pixels", title.to_lowercase())).including([0.0]);
+        let mut plot = DotPlot::new(format!("{title} by {}", self.name), axis, rows).grouped(self.most.keys().copied());
+        plot.subtitle = self.results.workload();
+        let bars = "Bars: 95 % interval over seeds. Each scene at";
+        plot.caption = format!("{meaning} {bars} {}.", self.samples());
+        Some(Block::figure(stem, plot))
+    }
 }
 
 /// The values in order: the usual one, then by their numbers; a value without a number counts as 0.
@@ -143,6 +214,7 @@ fn costs(results: &Results, of: Value, forget: fn(&mut ImageKey), usual: &str) -
             let all = values(&rows, value);
             (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
         };
+        let share = |value: fn(&Row) -> Option<f64>| Estimated::mean(&values(&rows, value));
         Some(Cost {
             scene: scene.to_string(),
             value: if value.is_empty() { usual.to_string() } else { value.to_string() },
@@ -150,8 +222,8 @@ fn costs(results: &Results, of: Value, forget: fn(&mut ImageKey), usual: &str) -
             light: Estimated::mean(&light.values())?,
             rmse: mean(|row| row.rmse),
             within: mean(|row| row.within_tolerance),
-            black: mean(|row| Some(row.black_pixels? as f64 / pixels(row))),
-            fireflies: mean(|row| Some(row.fireflies? as f64 / pixels(row))),
+            black: share(|row| Some(row.black_pixels? as f64 / pixels(row))),
+            fireflies: share(|row| Some(row.fireflies? as f64 / pixels(row))),
         })
     };
     cells.into_iter().filter_map(cost).collect()

@@ -152,8 +152,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     };
     first.named_at_ends = first.series.len() <= MOST_NAMES;
     let others = by_setting.iter().filter(|(setting, _)| *setting != main);
-    let others = others.map(|((scene, width, height), lines)| {
-        LineChart { title: format!("{scene}, {width}x{height}"), ..chart(lines) }
+    let others = others.map(|((scene, width, height), lines)| LineChart {
+        title: format!("{scene}, {width}x{height}"),
+        ..chart(lines)
     });
     let others: Vec<LineChart> = others.collect();
     let figure = if others.is_empty() {
@@ -208,8 +209,12 @@ fn prices(lines: &[Line<'_>], goals: &[Positive]) -> Block {
     };
     let place = |price: &Option<MeasuredPrice>| match price {
         Some(MeasuredPrice::Between(Crossing { between: [low, high], .. })) => format!("between {low} and {high} spp"),
-        Some(MeasuredPrice::BeforeFirst(at)) => format!("not measured: reached before {} spp, {:.4} s", at.spp, at.seconds),
-        Some(MeasuredPrice::BeyondLast(at)) => format!("not measured: not reached at {} spp, {:.4} s", at.spp, at.seconds),
+        Some(MeasuredPrice::BeforeFirst(at)) => {
+            format!("not measured: reached before {} spp, {:.4} s", at.spp, at.seconds)
+        }
+        Some(MeasuredPrice::BeyondLast(at)) => {
+            format!("not measured: not reached at {} spp, {:.4} s", at.spp, at.seconds)
+        }
         None => "not measured".to_string(),
     };
     Block::table("accuracy-prices", "Seconds to an error, interpolated between measured points", all)
@@ -233,8 +238,6 @@ fn points(lines: &[Line<'_>]) -> Block {
         .number("processes", Decimals(0), |(_, point)| count(&point.seconds))
         .estimated("RMSE, linear", Decimals(5), |(_, point)| point.rmse)
         .number("seeds", Decimals(0), |(_, point)| count(&point.rmse))
-        .number("MSE x seconds", Significant(4), |(_, point)| {
-            point.rmse.value * point.rmse.value * point.seconds.value
-        })
+        .number("MSE x seconds", Significant(4), |(_, point)| point.rmse.value * point.rmse.value * point.seconds.value)
         .end()
 }
