@@ -43,7 +43,9 @@ struct Cost {
     light: Estimated,
     rmse: Option<f64>,
     within: Option<f64>,
-    black: Option<Estimated>,
+    black: Option<f64>,
+    /// The black pixels less those with the usual value, as a share of the image, paired by seed.
+    more_black: Option<Estimated>,
     fireflies: Option<Estimated>,
 }
 
@@ -67,8 +69,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     }
     let shown = Shown { results, name, usual: &usual, values: &values, most: &most, costs: &costs };
     let mut blocks = vec![Block::figure("bias", shown.light())];
-    blocks.extend(shown.share("fireflies", |cost| cost.fireflies));
-    blocks.extend(shown.share("black-pixels", |cost| cost.black));
+    let meaning = "A firefly is brighter than the reference by more than 1, the display's white, in a channel.";
+    blocks.extend(shown.share("fireflies", ["Fireflies", "fireflies", meaning], |cost| cost.fireflies));
+    let (axis, meaning) = (format!("black pixels less those with {usual}"), "In a black pixel every channel is 0.");
+    blocks.extend(shown.share("black-pixels", ["Black pixels", &axis, meaning], |cost| cost.more_black));
     let is_shown = |cost: &&Cost| cost.value != usual && Some(&cost.spp) == most.get(cost.scene.as_str());
     let worst = costs.iter().filter(is_shown).max_by(|a, b| {
         let off = |cost: &Cost| (cost.light.value - 1.0).abs();
@@ -96,7 +100,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .estimated("light, %", Decimals(3), |cost| cost.light.times(100.0))
         .number("RMSE", Decimals(5), |cost| cost.rmse)
         .number("pixels within 0.05 of the display, %", Decimals(2), |cost| percent(cost.within))
-        .number("black pixels, %", Decimals(3), |cost| percent(cost.black.map(|share| share.value)))
+        .number("black pixels, %", Decimals(3), |cost| percent(cost.black))
         .estimated("fireflies in a million pixels", Decimals(0), |cost| cost.fireflies.map(|share| share.times(1e6)))
         .end();
     Ok(blocks.into_iter().chain(finding).chain([table]).collect())
@@ -140,13 +144,16 @@ impl Shown<'_> {
             let hollow = bar.is_none_or(|(low, _)| low <= 0.0);
             Some(Dot { value: own.abs(), interval: bar, count: change.count, hollow })
         };
-        let others = self.values.iter().filter(|value| *value != self.usual);
+        let others = || self.values.iter().filter(|value| *value != self.usual);
+        let has_dot = |(scene, side): &(&str, &str)| others().any(|value| dot(value, scene, side).is_some());
+        let groups: Vec<(&str, &str)> = groups.into_iter().filter(has_dot).collect();
         let row =
             |value: &String| DotRow::new(value, groups.iter().map(|(scene, side)| dot(value, scene, side)).collect());
         let axis = Axis::log(format!("change of the mean radiance against {}, %", self.usual));
         let names =
             groups.iter().map(|(scene, side)| if several { format!("{scene}, {side}") } else { (*side).to_string() });
-        let mut plot = DotPlot::new(format!("Light by {}", self.name), axis, others.map(row).collect()).grouped(names);
+        let mut plot =
+            DotPlot::new(format!("Light by {}", self.name), axis, others().map(row).collect()).grouped(names);
         plot.subtitle = self.results.workload();
         plot.caption = format!(
             "Bars: 95 % interval over seeds, of ratios within a seed. Hollow: the interval contains no change. No dot: less than {ROUNDING} %. Each scene at {}.",
@@ -156,35 +163,32 @@ impl Shown<'_> {
     }
 
     fn samples(&self) -> String {
-        let of = |(scene, spp): (&&str, &u32)| {
-            if self.most.len() > 1 {
-                format!("{spp} samples per pixel ({scene})")
-            } else {
-                format!("{spp} samples per pixel")
-            }
-        };
-        let each: Vec<String> = self.most.iter().map(of).collect();
+        let spp: BTreeSet<u32> = self.most.values().copied().collect();
+        if let [spp] = spp.into_iter().collect::<Vec<u32>>()[..] {
+            return format!("{spp} samples per pixel");
+        }
+        let each: Vec<String> =
+            self.most.iter().map(|(scene, spp)| format!("{spp} samples per pixel ({scene})")).collect();
         each.join(" and ")
     }
 
-    /// A share of the pixels, in a million; `None` if no image has such pixels.
-    fn share(&self, stem: &'static str, of: fn(&Cost) -> Option<Estimated>) -> Option<Block> {
+    /// A share of the pixels, in a million; `None` if it is 0 in every image.
+    fn share(
+        &self,
+        stem: &'static str,
+        [title, axis, meaning]: [&str; 3],
+        of: fn(&Cost) -> Option<Estimated>,
+    ) -> Option<Block> {
         let dot = |value: &String, scene: &&str| Some(of(self.cost(value, scene)?)?.times(1e6).dot());
         let row = |value: &String| DotRow::new(value, self.most.keys().map(|scene| dot(value, scene)).collect());
         let rows: Vec<DotRow> = self.values.iter().map(row).collect();
-        if !rows.iter().flat_map(|row| row.dots.iter().flatten()).any(|dot| dot.value > 0.0) {
+        if rows.iter().flat_map(|row| row.dots.iter().flatten()).all(|dot| dot.value == 0.0) {
             return None;
         }
-        let (title, meaning) = if stem == "fireflies" {
-            ("Fireflies", "A firefly is brighter than the reference by more than 1, the display's white, in a channel.")
-        } else {
-            ("Black pixels", "In a black pixel every channel is 0.")
-        };
-        let axis = Axis::linear(format!("{} in a million pixels", title.to_lowercase())).including([0.0]);
+        let axis = Axis::linear(format!("{axis}, in a million pixels")).including([0.0]);
         let mut plot = DotPlot::new(format!("{title} by {}", self.name), axis, rows).grouped(self.most.keys().copied());
         plot.subtitle = self.results.workload();
-        let bars = "Bars: 95 % interval over seeds. Each scene at";
-        plot.caption = format!("{meaning} {bars} {}.", self.samples());
+        plot.caption = format!("{meaning} Bars: 95 % interval over seeds. Each scene at {}.", self.samples());
         Some(Block::figure(stem, plot))
     }
 }
@@ -203,8 +207,11 @@ fn in_order(values: impl Iterator<Item = String>, usual: &str) -> Vec<String> {
 fn costs(results: &Results, of: Value, forget: fn(&mut ImageKey), usual: &str) -> Vec<Cost> {
     // Images are compared whatever the kernel: an approximation may exist for one kernel only, and kernels give the
     // same image.
-    let plain = results.rows().filter(|row| of(&row.image).is_empty());
-    let plain = Repeats::of_images(plain, forget, |row| row.mean_radiance);
+    let plain: Vec<&Row> = results.rows().filter(|row| of(&row.image).is_empty()).collect();
+    let black = |row: &Row| Some(row.black_pixels? as f64 / pixels(row));
+    let of_black = |rows: &[&Row]| Repeats::of_images(rows.iter().copied(), forget, black);
+    let plain_black = of_black(&plain);
+    let plain = Repeats::of_images(plain.iter().copied(), forget, |row| row.mean_radiance);
     let cells = results.by(|row| (row.scene.as_str(), of(&row.image), row.spp));
     let cost = |((scene, value, spp), rows): ((&str, &str, u32), Vec<&Row>)| {
         let rows = rows.into_iter().map(|row| (&row.image, row)).collect::<BTreeMap<_, _>>().into_values();
@@ -222,7 +229,8 @@ fn costs(results: &Results, of: Value, forget: fn(&mut ImageKey), usual: &str) -
             light: Estimated::mean(&light.values())?,
             rmse: mean(|row| row.rmse),
             within: mean(|row| row.within_tolerance),
-            black: share(|row| Some(row.black_pixels? as f64 / pixels(row))),
+            black: mean(black),
+            more_black: Estimated::mean(&of_black(&rows).minus(&plain_black).values()),
             fireflies: share(|row| Some(row.fireflies? as f64 / pixels(row))),
         })
     };

@@ -20,6 +20,8 @@ const FEW_THREADS: f64 = 16.0;
 /// The speedups and the data to explain them.
 struct Speedups<'a> {
     results: &'a Results,
+    /// The subtitle of all figures.
+    workload: String,
     serial: Serial<'a>,
     all: Vec<(&'a Schedule, Ratio)>,
     /// The requested numbers of threads. A strategy with a thread for each job ignores them, so it has no position on
@@ -42,7 +44,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let images: BTreeMap<_, _> = all.iter().map(|(schedule, _)| (*schedule, images(schedule))).collect();
     let peers = gathered(images.iter().map(|(schedule, own)| (own, schedule))).into_iter();
     let usual = peers.max_by_key(|(_, schedules)| schedules.len()).map(|(own, _)| own.clone()).unwrap_or_default();
-    let found = Speedups { results, serial, all, asked, processors: results.run.machine.processors, images, usual };
+    let (processors, workload) = (results.run.machine.processors, results.workload());
+    let found = Speedups { results, workload, serial, all, asked, processors, images, usual };
     let contest = found.contest()?;
     let mut blocks = found.figures(contest.as_ref());
     blocks.extend(contest.map(|contest| contest.finding(found.processors)));
@@ -254,7 +257,7 @@ impl Speedups<'_> {
             names.push("a thread per job".to_string());
         }
         let mut plot = DotPlot::new(title, Axis::linear(axis).including([0.9]), rows).grouped(names);
-        plot.subtitle = self.results.workload();
+        plot.subtitle.clone_from(&self.workload);
         plot.caption = ratio_bars(own.iter().map(|(_, speedup)| *speedup));
         if !open.is_empty() {
             let processors = self.processors;
@@ -280,7 +283,7 @@ impl Speedups<'_> {
         let few = ticks.iter().all(|threads| *threads <= FEW_THREADS);
         let x = if few { Axis::linear("threads") } else { Axis::log("threads") }.ticks_at(ticks);
         let mut chart = LineChart::new(title, x, y, series);
-        chart.subtitle = self.results.workload();
+        chart.subtitle.clone_from(&self.workload);
         chart.caption = caption.to_string();
         chart.dodge = 5.0;
         chart
