@@ -112,11 +112,15 @@ impl Results {
         Profile::from_name(&self.run.profile).unwrap_or(Profile::Quick)
     }
 
-    /// Scene, size and machine in a line, as the subtitle of a figure. Leaves out the scene if there are several, and
-    /// the sizes if there are more than three.
+    /// Scene, size and machine in a line, as the subtitle of a figure.
     pub(super) fn workload(&self) -> String {
-        let scenes: BTreeSet<&str> = self.rows().map(|row| row.scene.as_str()).collect();
-        let sizes: BTreeSet<(u32, u32)> = self.rows().map(|row| (row.width, row.height)).collect();
+        self.workload_of(&self.rows().collect::<Vec<&Row>>())
+    }
+
+    /// The same for some rows. Leaves out the scene if there are several, and the sizes if there are more than three.
+    pub(super) fn workload_of(&self, rows: &[&Row]) -> String {
+        let scenes: BTreeSet<&str> = rows.iter().map(|row| row.scene.as_str()).collect();
+        let sizes: BTreeSet<(u32, u32)> = rows.iter().map(|row| (row.width, row.height)).collect();
         let scene = scenes.first().filter(|_| scenes.len() == 1).map(|scene| format!("{scene}, "));
         let sizes: Vec<String> = sizes.into_iter().map(|(width, height)| format!("{width}x{height}")).collect();
         let size = (1..=3).contains(&sizes.len()).then(|| format!("{}, ", sizes.join(" and ")));

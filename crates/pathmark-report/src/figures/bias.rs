@@ -149,7 +149,13 @@ impl Shown<'_> {
         let groups: Vec<(&str, &str)> = groups.into_iter().filter(has_dot).collect();
         let row =
             |value: &String| DotRow::new(value, groups.iter().map(|(scene, side)| dot(value, scene, side)).collect());
-        let axis = Axis::log(format!("change of the mean radiance against {}, %", self.usual));
+        let sides: BTreeSet<&str> = groups.iter().map(|(_, side)| *side).collect();
+        let subject = match sides.into_iter().collect::<Vec<&str>>()[..] {
+            ["darker"] => "mean radiance lost",
+            ["lighter"] => "mean radiance gained",
+            _ => "change of the mean radiance",
+        };
+        let axis = Axis::log(format!("{subject} against {}, %", self.usual));
         let names =
             groups.iter().map(|(scene, side)| if several { format!("{scene}, {side}") } else { (*side).to_string() });
         let mut plot =

@@ -28,7 +28,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     pictures.push(Cell::of(&reference, vec!["reference".to_string(), "mean of two halves".to_string()])?);
     let crops: Vec<Option<Cell>> = pictures.iter().map(Cell::crop).collect();
     let step = pictures[0].step();
-    let reduced = format!("; the whole images show one of {step} columns and rows");
+    let reduced = format!("; the whole images show 1 of {step}x{step} pixels");
     errors.push(None);
     flips.push(None);
     let (estimator, schedule) = (&images[0].0.estimator, images[0].0.schedule.label());

@@ -96,9 +96,11 @@ fn panels(results: &Results, series: Vec<Series>, caption: &str) -> Panels {
     let x = Axis::log("microseconds of work per job (serial)").including(sizes);
     let y = Axis::linear("best serial time / (processors in use × time)").including([0.0, 1.0]);
     let half = || vec![Overlay::guide("one half: METG(50 %)", Curve::Line { intercept: HALF, slope: 0.0 })];
+    // The large chart names the axes.
+    let unnamed = |axis: &Axis| Axis { label: String::new(), ..axis.clone() };
     let small = |series: &Series| {
-        let y = y.clone().including(heights.iter().copied());
-        let mut chart = LineChart::new(&series.name, x.clone(), y, vec![series.clone()]);
+        let y = unnamed(&y).including(heights.iter().copied());
+        let mut chart = LineChart::new(&series.name, unnamed(&x), y, vec![series.clone()]);
         chart.overlays = half();
         chart
     };

@@ -132,7 +132,11 @@ fn plot(results: &Results, works: &[Vec<Line<'_>>], yardstick: &str) -> DotPlot 
     let title = if has_devices { "What SIMD lanes and devices are worth" } else { "What SIMD lanes are worth" };
     let mut plot = DotPlot::new(title, axis, rows.collect()).grouped(kernels());
     plot.guides = vec![(1.0, format!("the {yardstick} kernel"))];
-    plot.subtitle = format!("one thread, {}", results.run.machine.line());
+    let line = results.run.machine.line();
+    plot.subtitle = std::iter::once(format!("one thread, {line}"))
+        .chain(results.run.devices.clone())
+        .collect::<Vec<_>>()
+        .join("; ");
     let shown = alone().flatten().filter(|line| line.kernel != yardstick);
     let bars = bars(shown.filter_map(|line| line.ratio));
     plot.caption = format!("Ratios of renders of the same image. {bars}");

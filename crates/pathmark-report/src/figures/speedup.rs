@@ -257,7 +257,8 @@ impl Speedups<'_> {
             names.push("a thread per job".to_string());
         }
         let mut plot = DotPlot::new(title, Axis::linear(axis).including([0.9]), rows).grouped(names);
-        plot.subtitle.clone_from(&self.workload);
+        let rows = own.iter().flat_map(|(schedule, _)| self.serial.rows(schedule).iter().copied());
+        plot.subtitle = self.results.workload_of(&rows.collect::<Vec<&Row>>());
         plot.caption = ratio_bars(own.iter().map(|(_, speedup)| *speedup));
         if !open.is_empty() {
             let processors = self.processors;
