@@ -3,6 +3,8 @@
 pub mod claims;
 mod contenders;
 mod estimated;
+#[cfg(test)]
+mod figure_tests;
 mod figures;
 pub mod forecasts;
 mod page;
