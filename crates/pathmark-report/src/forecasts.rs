@@ -1,7 +1,6 @@
 //! Simulated and predicted schedules as tables and charts: for the figure of an experiment and for the verb `simulate`.
 
 use crate::analysis::crossed::Crossed;
-use crate::analysis::mean::geometric_interval;
 use crate::analysis::speedup::serial_fraction;
 use crate::plot::number::{between, short};
 use crate::prelude::*;
@@ -123,18 +122,18 @@ pub(super) fn in_words(found: &Agreement) -> String {
     )
 }
 
-/// A finding about the work inflation at the most workers; none with fewer than two repetitions.
+/// A finding about the work inflation at the most workers, if there were several.
 fn inflation_block(ratios: &[BusyRatio]) -> Option<Block> {
     let inflation = WorkInflation::of(ratios, None);
-    let (workers, factors) = inflation.largest()?;
-    let told = geometric_interval(factors, LEVEL)?;
+    let (workers, factors) = inflation.largest().filter(|(workers, _)| *workers > 1)?;
+    let told = Estimated::typical(factors, Stopping::Fixed)?;
     Some(Block::finding(format!(
         "Work inflation: with {} busy, the jobs took {}{} times as long as in the serial run of the same repetition \
          ({:.0} % confidence, {}). A prediction without this factor is too fast by it. The forecasts leave it out: in \
          them, a busy neighbour slows no core.",
         counted(workers, "thread"),
         short(told.value, 3),
-        between(Some((told.interval.low, told.interval.high)), 3),
+        between(told.bar(), 3),
         100.0 * LEVEL,
         counted(factors.len(), "repetition"),
     )))

@@ -20,6 +20,8 @@ mod serial;
 #[cfg(test)]
 mod tests;
 pub mod timeline;
+#[cfg(test)]
+mod trace_tests;
 pub mod why;
 mod words;
 
