@@ -244,7 +244,7 @@ impl Speedups<'_> {
             first_partial.cmp(&second_partial).then(first.total_cmp(&second))
         });
         let dots = |dots: Vec<Option<Estimated>>| dots.into_iter().map(|told| Some(told?.dot())).collect();
-        let marked = |name: String| if open.contains(&name) { format!("{name} {OPEN}") } else { name };
+        let marked = |name: String| if open.contains(&name) { format!("{OPEN} {name}") } else { name };
         let rows: Vec<DotRow> = rows.into_iter().map(|(name, own)| DotRow::new(marked(name), dots(own))).collect();
         let workers = if self.all.iter().any(|(schedule, _)| is_of_ranks(&schedule.name)) {
             ["worker", "workers"]
