@@ -78,23 +78,22 @@ pub fn prediction_blocks(Predicted { predictions, ratios }: &Predicted) -> Vec<B
     let Some(all) = errors(|p| Some(p.plain_ratio)) else { return Vec::new() };
     let runs: usize = predictions.iter().map(|prediction| prediction.runs).sum();
     let quiet: usize = predictions.iter().map(|prediction| prediction.undisturbed).sum();
-    let mut told = format!(
+    let first = format!(
         "{} of this machine predicted from serial runs. Over all {}: {all}.",
         counted(predictions.len(), "schedule"),
         counted(runs, "run"),
     );
-    if let Some(found) = errors(|p| p.modelled_ratio) {
-        told += &format!(" With the work inflation of the other repetitions: {found}.");
-    }
-    if let Some(found) = errors(|p| p.undisturbed_ratio) {
-        told += &format!(
-            " Over the {quiet} runs whose CPU time was within {:.0} % of the serial run's, so that the schedule made their time: {found}.",
-            100.0 * DISTURBED
-        );
-    }
-    if let Some(found) = errors(|p| Some(p.ratio)) {
-        told += &format!(" Told each run's own CPU time, which is no prediction: {found}.");
-    }
+    let quietly = format!(
+        "Over the {quiet} runs whose CPU time was within {:.0} % of the serial run's, so that the schedule made their time",
+        100.0 * DISTURBED
+    );
+    let others = [
+        ("With the work inflation of the other repetitions", errors(|p| p.modelled_ratio)),
+        (&quietly, errors(|p| p.undisturbed_ratio)),
+        ("Told each run's own CPU time, which is no prediction", errors(|p| Some(p.ratio))),
+    ];
+    let others = others.into_iter().filter_map(|(subject, found)| Some(format!("{subject}: {}.", found?)));
+    let told = std::iter::once(first).chain(others).collect::<Vec<String>>().join(" ");
     let off = |ratio: f64| 100.0 * (ratio - 1.0);
     let table = Block::table("predictions", "The simulator predicts this machine", predictions)
         .column("strategy", |p| p.strategy.clone())

@@ -72,7 +72,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let grain = |(job_s, values): (f64, Vec<f64>)| -> Grain { (job_s, values) };
     let grains: BTreeMap<String, Vec<Grain>> =
         grains.into_iter().map(|(name, own)| (name, in_common(own).into_iter().map(grain).collect())).collect();
-    let panels = panels(results, series, &caption);
+    let panels = panels(results, &series, &caption);
     let smallest = grains.iter().map(|(strategy, grains)| (strategy, in_words(&metg(grains, HALF, LEVEL))));
     let table = Block::table("metg", "Smallest job that keeps half of the processors", smallest)
         .column("strategy", |(strategy, _)| (*strategy).clone())
@@ -88,7 +88,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 }
 
 /// All strategies in one chart, without intervals, and each in a small one with its intervals.
-fn panels(results: &Results, series: Vec<Series>, caption: &str) -> Panels {
+fn panels(results: &Results, series: &[Series], caption: &str) -> Panels {
     let points = || series.iter().flat_map(|series| &series.points);
     let ends = |ends: fn(&Point) -> [f64; 2]| points().flat_map(ends).collect::<Vec<f64>>();
     let sizes = ends(|point| [point.x, point.x]);
@@ -111,7 +111,7 @@ fn panels(results: &Results, series: Vec<Series>, caption: &str) -> Panels {
         bare.points.iter_mut().for_each(|point| point.y_interval = None);
         bare
     };
-    let drawn = if others.is_empty() { series.clone() } else { series.iter().map(bare).collect() };
+    let drawn = if others.is_empty() { series.to_vec() } else { series.iter().map(bare).collect() };
     let mut main = LineChart::new(title, x.clone(), y.clone(), drawn);
     main.subtitle = results.workload();
     main.caption = caption.to_string();

@@ -262,7 +262,8 @@ impl Speedups<'_> {
         plot.caption = ratio_bars(own.iter().map(|(_, speedup)| *speedup));
         if !open.is_empty() {
             let processors = self.processors;
-            plot.caption += &format!(" {OPEN}: with {processors} threads not told apart from the fastest by this run.");
+            let mark = format!(" {OPEN}: with {processors} threads not told apart from the fastest by this run.");
+            plot.caption.push_str(&mark);
         }
         Some(plot)
     }
