@@ -18,12 +18,26 @@ pub(super) fn hollow(told: impl IntoIterator<Item = Estimated>) -> &'static str 
 /// The sentence of a caption about bars, and that about hollow marks.
 pub(super) fn bars<T: Into<Estimated>>(told: impl IntoIterator<Item = T>) -> String {
     let told: Vec<Estimated> = told.into_iter().map(Into::into).collect();
-    format!("Bars: {}.{}", confidence(told.iter().filter_map(|told| told.interval)), hollow(told))
+    let level = confidence(told.iter().filter_map(|told| told.interval));
+    format!("Bars: {level}{}.{}", means_of_few(&told), hollow(told))
+}
+
+/// Fewest values whose extremes enclose the median with 95 % confidence.
+const ENOUGH: usize = 6;
+
+/// The part of a caption about few values, whose typical value is no median; empty if there are none.
+fn means_of_few(told: &[Estimated]) -> &'static str {
+    let is_few = |told: &Estimated| told.count.is_some_and(|count| (2..ENOUGH).contains(&count));
+    match told.iter().filter(|told| is_few(told)).count() {
+        0 => "",
+        few if few == told.len() => " (the geometric mean, because there are fewer than six values)",
+        _ => " (the median, or the geometric mean of fewer than six values)",
+    }
 }
 
 /// The caption of ratios in pairs.
 pub(super) fn ratio_bars<T: Into<Estimated>>(told: impl IntoIterator<Item = T>) -> String {
-    format!("Median of ratios within a repetition. {}", bars(told))
+    format!("Ratios within a repetition. {}", bars(told))
 }
 
 /// An interval with the confidence that it reaches: few values cannot reach 95 %.

@@ -279,7 +279,7 @@ impl Definition {
     }
 
     /// The object on whose pixels errors are measured, too.
-    pub(super) fn object(&self) -> Option<&str> {
+    pub fn object(&self) -> Option<&str> {
         self.reference.as_ref()?.object.as_deref()
     }
 

@@ -5,6 +5,9 @@
 //! before the clock starts, so a pool's workers may still be starting when the jobs come. All strategies take turns.
 //! Each row is the median of [`ROUNDS`] rounds, or of as many as fit into [`BUDGET`]; a first round is discarded.
 //!
+//! A calibration is repeated: a sweep makes half of the [`CALIBRATIONS`] before its first cell and half after its last
+//! one. The costs differ from one calibration to the next, and the forecasts' intervals contain this difference.
+//!
 //! The simulator interprets the rows (`simulate::Overheads`).
 
 use super::available_threads;
@@ -15,9 +18,11 @@ use crate::error::{Error, Result};
 use crate::lab::Lab;
 use crate::strategy::{Config, Spawner, SystemThreads, Workers};
 use serde::{Deserialize, Serialize};
+use std::borrow::Borrow;
 use std::hint::black_box;
 use std::io;
 use std::num::NonZeroUsize;
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -25,9 +30,11 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Most rounds that count towards the median.
-const ROUNDS: usize = 25;
+const ROUNDS: usize = 9;
 /// No round begins after this time; at least three count.
-const BUDGET: Duration = Duration::from_millis(1200);
+const BUDGET: Duration = Duration::from_millis(400);
+/// Calibrations of a sweep: with eight, the quantile of Student's t is 2.4; with three, it would be 4.3.
+pub const CALIBRATIONS: u32 = 8;
 /// Jobs of a run: few, for the cost of a run, and many, for the cost of a job.
 const JOBS: [usize; 2] = [200, 20_000];
 /// The same if each job is a thread.
@@ -45,6 +52,9 @@ pub struct CalibrationRow {
     pub cpu_s: Option<f64>,
     /// Threads that the strategy started during the run; 0 for pools.
     pub started: usize,
+    /// The calibration that the row belongs to, from 0. Older files have one calibration and no such column.
+    #[serde(default)]
+    pub calibration: u32,
 }
 
 #[derive(Default)]
@@ -64,8 +74,9 @@ impl Spawner for Counted {
     }
 }
 
-/// Times empty jobs under each of these strategies, given as in [`super::Settings::strategy`].
-pub fn calibrate(lab: &Lab, strategies: &[String]) -> Result<Vec<CalibrationRow>> {
+/// Times empty jobs under each of these strategies, given as in [`super::Settings::strategy`]: one calibration for each
+/// number of `calibrations`.
+pub fn calibrate(lab: &Lab, strategies: &[String], calibrations: Range<u32>) -> Result<Vec<CalibrationRow>> {
     let mut rows = Vec::new();
     for strategy in strategies {
         let (entry, _) = lab.strategy_named(strategy)?;
@@ -82,34 +93,56 @@ pub fn calibrate(lab: &Lab, strategies: &[String]) -> Result<Vec<CalibrationRow>
                 seconds: 0.0,
                 cpu_s: None,
                 started: 0,
+                calibration: 0,
             }));
         }
     }
-    let mut times = vec![(Vec::new(), Vec::new()); rows.len()];
+    let mut all = Vec::new();
+    for calibration in calibrations {
+        all.extend(calibrated(lab, &rows)?.into_iter().map(|row| CalibrationRow { calibration, ..row }));
+    }
+    Ok(all)
+}
+
+/// One calibration: these rows with their median times.
+fn calibrated(lab: &Lab, rows: &[CalibrationRow]) -> Result<Vec<CalibrationRow>> {
+    let mut rounds: Vec<Vec<CalibrationRow>> = vec![Vec::new(); rows.len()];
     let start = Instant::now();
     for round in 0..=ROUNDS {
         if round > 3 && start.elapsed() > BUDGET {
             break;
         }
-        for (row, times) in rows.iter_mut().zip(&mut times) {
-            *row = run_empty_jobs(lab, row)?;
+        for (row, of_row) in rows.iter().zip(&mut rounds) {
+            let timed = run_empty_jobs(lab, row)?;
             if round > 0 {
-                times.0.push(row.seconds);
-                times.1.extend(row.cpu_s);
+                of_row.push(timed);
             }
         }
     }
-    for (row, (seconds, cpu_s)) in rows.iter_mut().zip(&times) {
-        row.seconds = median(seconds).unwrap_or_default();
-        row.cpu_s = median(cpu_s);
-    }
-    Ok(rows)
+    Ok(rounds.iter().filter_map(|rounds| CalibrationRow::median(rounds)).collect())
 }
 
-/// Times all strategies of the table and writes the rows: `calibration.csv`, beside those of a sweep.
-pub fn write_calibration(lab: &Lab, path: &Path) -> Result<()> {
+impl CalibrationRow {
+    /// The row with the median times of several rows of one schedule; `None` without rows.
+    pub fn median<R: Borrow<Self>>(rows: &[R]) -> Option<Self> {
+        let last = rows.last()?.borrow();
+        let seconds: Vec<f64> = rows.iter().map(|row| row.borrow().seconds).collect();
+        let cpu_s: Vec<f64> = rows.iter().filter_map(|row| row.borrow().cpu_s).collect();
+        Some(Self { seconds: median(&seconds)?, cpu_s: median(&cpu_s), ..last.clone() })
+    }
+}
+
+/// Writes calibrations of all strategies of the table to `calibration.csv`, beside the rows of a sweep, until there are
+/// `wanted` of them. Calibrations that the file already has stay.
+pub fn write_calibrations(lab: &Lab, path: &Path, wanted: u32) -> Result<()> {
+    let mut rows = if path.is_file() { read_calibration(path)? } else { Vec::new() };
+    let first = rows.iter().map(|row| row.calibration + 1).max().unwrap_or(0);
+    if first >= wanted {
+        return Ok(());
+    }
     let strategies: Vec<String> = lab.strategies().iter().map(|entry| entry.name.to_string()).collect();
-    csv_file::write(path, calibrate(lab, &strategies)?)
+    rows.extend(calibrate(lab, &strategies, first..wanted)?);
+    csv_file::write(path, rows)
 }
 
 pub fn read_calibration(path: &Path) -> Result<Vec<CalibrationRow>> {
@@ -161,6 +194,7 @@ mod tests {
             seconds: 0.1,
             cpu_s,
             started: 2,
+            calibration: 3,
         };
         let rows = vec![row(None), row(Some(0.3))];
         let mut file = csv::Writer::from_writer(Vec::new());
@@ -173,15 +207,41 @@ mod tests {
         assert_eq!(read.unwrap(), rows);
     }
 
+    /// A file of an earlier version has no column for the calibration.
+    #[test]
+    fn an_older_file_is_one_calibration() {
+        let text = "strategy,threads,jobs,seconds,cpu_s,started\nserial,1,200,0.5,,0\n";
+        let read: std::result::Result<Vec<CalibrationRow>, _> =
+            csv::Reader::from_reader(text.as_bytes()).deserialize().collect();
+        assert_eq!(read.unwrap()[0].calibration, 0);
+    }
+
+    /// A second call adds the missing calibrations, and a third one changes nothing.
+    #[test]
+    fn calibrations_are_added_to_a_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("calibration.csv");
+        let lab = Lab::new();
+        write_calibrations(&lab, &path, 1).unwrap();
+        let before = read_calibration(&path).unwrap();
+        write_calibrations(&lab, &path, 2).unwrap();
+        let after = read_calibration(&path).unwrap();
+        assert_eq!(after[..before.len()], before[..]);
+        assert_eq!(after.len(), 2 * before.len());
+        assert!(after[before.len()..].iter().all(|row| row.calibration == 1));
+        write_calibrations(&lab, &path, 2).unwrap();
+        assert_eq!(read_calibration(&path).unwrap(), after);
+    }
+
     /// Each strategy gets a positive time for two numbers of jobs, and an unknown strategy is refused.
     #[test]
     fn every_strategy_is_timed() {
         let names: Vec<String> = STRATEGIES.iter().map(|entry| entry.name.to_owned()).collect();
-        let rows = calibrate(&Lab::new(), &names).unwrap();
+        let rows = calibrate(&Lab::new(), &names, 0..1).unwrap();
         for name in &names {
             let of: Vec<_> = rows.iter().filter(|row| &row.strategy == name).collect();
             assert!(of.len() >= 2 && of.iter().all(|row| row.seconds > 0.0), "{of:?}");
         }
-        assert!(calibrate(&Lab::new(), &["no-such-strategy".to_owned()]).is_err());
+        assert!(calibrate(&Lab::new(), &["no-such-strategy".to_owned()], 0..1).is_err());
     }
 }

@@ -95,7 +95,8 @@ impl Evidence {
         self.items(0).filter(|item| conditions.admit(item.columns))
     }
 
-    /// The statistic of simulated schedules, from the traced jobs of serial rows.
+    /// The statistic of simulated schedules, from the traced jobs of serial rows. Its interval contains the differences
+    /// between these runs and those between the calibrations of the folder.
     fn forecast(
         &self,
         rows: &[&Row],
@@ -110,18 +111,18 @@ impl Evidence {
         let mut known = contenders(&self.results.definition.lab, &read_calibration(&path)?);
         known.push(Contender::longest_first());
         known.retain(|contender| contender.name == strategy);
-        let mut values = Vec::new();
+        let mut traces = Vec::new();
         for row in rows.iter().filter(|row| row.schedule.is_serial()) {
-            let Some(trace) = self.results.trace(row)? else { continue };
-            for told in forecast(&trace.costs_s(), &known, &[cores], &Hardware::default()) {
-                values.extend(match column {
-                    ForecastColumn::Speedup => Some(told.speedup),
-                    ForecastColumn::Efficiency => Some(told.efficiency),
-                    ForecastColumn::SerialFraction => serial_fraction(told.speedup, cores),
-                });
-            }
+            traces.extend(self.results.trace(row)?.map(|trace| trace.costs_s()));
         }
-        Ok(Measurement::typical(&values, Scale::Linear, self.results.stopping(), level, Unit::Repetition.noun()))
+        let told = forecast(&traces, &known, &[cores], &Hardware::default(), level);
+        let Some(told) = told.first() else { return Ok(None) };
+        let value = match column {
+            ForecastColumn::Speedup => Some(told.speedup),
+            ForecastColumn::Efficiency => told.efficiency(),
+            ForecastColumn::SerialFraction => told.speedup.through(|speedup| serial_fraction(speedup, cores)),
+        };
+        Ok(value.map(|told| Measurement::of_table(told.value, told.interval, traces.len(), "trace")))
     }
 }
 

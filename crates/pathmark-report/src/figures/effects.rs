@@ -200,7 +200,7 @@ fn scenes(results: &Results, largest: &str) -> Vec<Block> {
     plot.guides = vec![(1.0, "no gain".to_string())];
     plot.subtitle = machine(results);
     let bars = bars(fits.iter().map(|fit| fit.ratio));
-    plot.caption = format!("Median of ratios within a repetition, same image. {bars}");
+    plot.caption = format!("Ratios within a repetition, same image. {bars}");
     let slower: Vec<&str> = fits.iter().filter(|fit| fit.ratio.interval.high < 1.0).map(|fit| fit.scene).collect();
     let faster = fits.iter().filter(|fit| fit.ratio.interval.low > 1.0).count();
     let never = if slower.is_empty() {

@@ -53,6 +53,10 @@ impl Values {
     }
 }
 
+/// A line has a slope from this many numbers of samples on: fewer hardly show whether the points lie on a line. Few
+/// seeds need no such limit, because Student's quantile widens their interval.
+const FEWEST_POINTS: usize = 4;
+
 /// The error of an image at some number of samples.
 struct Line {
     image: String,
@@ -76,10 +80,12 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         });
         let own: Vec<Line> = at_spp.collect();
         let curves: Vec<_> = curves_by(&rows, values.mse()).into_iter().map(|(curve, _)| curve).collect();
-        if let Some(fit) = SeedCurves::of_errors(&curves).and_then(|curves| power_law(&curves, LEVEL)) {
+        let fit = SeedCurves::of_errors(&curves).and_then(|curves| power_law(&curves, LEVEL));
+        if let Some(fit) = fit.filter(|_| own.len() >= FEWEST_POINTS) {
             let (slope, interval) = (fit.exponent.value, fit.exponent.interval);
             let curve = Curve::Power { scale: libm::exp(fit.log_scale), exponent: slope };
-            let label = format!("fit: slope {slope:.3}\n95 % {:.3} to {:.3}", interval.low, interval.high);
+            let seeds = counted(fit.seeds, "seed");
+            let label = format!("fit: slope {slope:.3}, {seeds}\n95 % {:.3} to {:.3}", interval.low, interval.high);
             overlays.push(Overlay::fit(label, curve, index));
             let verdict = if interval.contains(-0.5) { "contains" } else { "does not contain" };
             findings.push(Block::finding(format!(
