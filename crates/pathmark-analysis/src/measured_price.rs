@@ -49,7 +49,11 @@ impl MeasuredPrice {
         }
         let (first, last) = (points.first()?, points.last()?);
         if first.1 <= goal {
-            return Some(if first.1 < goal { Self::BeforeFirst(first.0) } else { Self::Between(Crossing::at(first.0)) });
+            return Some(if first.1 < goal {
+                Self::BeforeFirst(first.0)
+            } else {
+                Self::Between(Crossing::at(first.0))
+            });
         }
         let Some(pair) = points.windows(2).find(|pair| pair[1].1 <= goal) else {
             return Some(Self::BeyondLast(last.0));
@@ -122,7 +126,9 @@ mod tests {
     fn a_price_between_points_is_the_closed_form() {
         let seeds = [curve(3.9), curve(4.0), curve(4.1)];
         for rmse in [0.26, 0.3, 0.5, 0.7] {
-            let Some(MeasuredPrice::Between(found)) = MeasuredPrice::of(&seeds, &times(), rmse) else { panic!("{rmse}") };
+            let Some(MeasuredPrice::Between(found)) = MeasuredPrice::of(&seeds, &times(), rmse) else {
+                panic!("{rmse}")
+            };
             let exact = 0.08 / (rmse * rmse);
             assert!((found.seconds / exact - 1.0).abs() < 2e-4, "{rmse}: {found:?}, {exact}");
             let spp = exact / 0.02;

@@ -39,17 +39,21 @@ pub(super) fn blocks(results: &Results, scenes: &[String]) -> Result<Vec<Block>>
         KERNELS.map(|kernel| ((*scene, kernel), times(scene, kernel).over(&times(before, kernel))))
     });
     let ratios: BTreeMap<(&str, &str), Ratio> = estimates(cells, results.stopping()).into_iter().collect();
-    let steps: Vec<Step<'_>> = pairs.into_iter().map(|(before, scene)| Step {
-        before,
-        scene,
-        ratios: KERNELS.map(|kernel| ratios.get(&(scene, kernel)).copied()).to_vec(),
-        changed: changed(images.get(before), images.get(scene)),
-        mean: typical(by_scene.get(scene).into_iter().flatten(), |row| row.mean_radiance),
-    }).collect();
+    let steps: Vec<Step<'_>> = pairs
+        .into_iter()
+        .map(|(before, scene)| Step {
+            before,
+            scene,
+            ratios: KERNELS.map(|kernel| ratios.get(&(scene, kernel)).copied()).to_vec(),
+            changed: changed(images.get(before), images.get(scene)),
+            mean: typical(by_scene.get(scene).into_iter().flatten(), |row| row.mean_radiance),
+        })
+        .collect();
     if !steps.iter().any(|step| step.ratios.iter().any(Option::is_some)) {
         return Ok(Vec::new());
     }
-    let dots = |step: &Step<'_>| step.ratios.iter().map(|ratio| ratio.map(|ratio| Estimated::from(ratio).dot())).collect();
+    let dots =
+        |step: &Step<'_>| step.ratios.iter().map(|ratio| ratio.map(|ratio| Estimated::from(ratio).dot())).collect();
     let axis = Axis::linear("processor time of a sample / in the scene above").including([0.95, 1.05]);
     let rows = steps.iter().map(|step| DotRow::new(step.scene, dots(step))).collect();
     let mut plot = DotPlot::new("Effects added one by one", axis, rows).grouped(KERNELS);
@@ -129,7 +133,9 @@ mod tests {
     #[test]
     fn noise_has_no_part_in_what_changed() {
         let noise = [[0.1, -0.1, 0.1, -0.1], [0.1, 0.1, -0.1, -0.1]];
-        let of = |seed: usize, more: f64| image((0..4).map(|k| 1.0 + if k == 0 { more } else { 0.0 } + noise[seed][k] * more));
+        let of = |seed: usize, more: f64| {
+            image((0..4).map(|k| 1.0 + if k == 0 { more } else { 0.0 } + noise[seed][k] * more))
+        };
         let both = |more: f64| (0..2).map(|seed| (seed as u64, of(seed, more))).collect::<BTreeMap<u64, Image>>();
         let found = changed(Some(&both(0.0)), Some(&both(0.5))).unwrap();
         // Products: (.55 .55), (-.05 .05), (.05 -.05), (-.05 -.05).

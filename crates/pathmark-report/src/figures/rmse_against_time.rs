@@ -160,8 +160,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     };
     first.named_at_ends = first.series.len() <= MOST_NAMES;
     let others = by_setting.iter().filter(|(setting, _)| *setting != main);
-    let others = others.map(|((scene, width, height), lines)| {
-        LineChart { title: format!("{scene}, {width}x{height}"), ..chart(lines) }
+    let others = others.map(|((scene, width, height), lines)| LineChart {
+        title: format!("{scene}, {width}x{height}"),
+        ..chart(lines)
     });
     let others: Vec<LineChart> = others.collect();
     let figure = if others.is_empty() {
@@ -216,8 +217,12 @@ fn prices(lines: &[Line<'_>], goals: &[Positive]) -> Block {
     };
     let place = |price: &Option<MeasuredPrice>| match price {
         Some(MeasuredPrice::Between(Crossing { between: [low, high], .. })) => format!("between {low} and {high} spp"),
-        Some(MeasuredPrice::BeforeFirst(at)) => format!("not measured: reached before {} spp, {:.4} s", at.spp, at.seconds),
-        Some(MeasuredPrice::BeyondLast(at)) => format!("not measured: not reached at {} spp, {:.4} s", at.spp, at.seconds),
+        Some(MeasuredPrice::BeforeFirst(at)) => {
+            format!("not measured: reached before {} spp, {:.4} s", at.spp, at.seconds)
+        }
+        Some(MeasuredPrice::BeyondLast(at)) => {
+            format!("not measured: not reached at {} spp, {:.4} s", at.spp, at.seconds)
+        }
         None => "not measured".to_string(),
     };
     Block::table("accuracy-prices", "Seconds to an error, interpolated between measured points", all)
@@ -241,9 +246,7 @@ fn points(lines: &[Line<'_>]) -> Block {
         .number("processes", Decimals(0), |(_, point)| count(&point.seconds))
         .estimated("RMSE, linear", Decimals(5), |(_, point)| point.rmse)
         .number("seeds", Decimals(0), |(_, point)| count(&point.rmse))
-        .number("MSE x seconds", Significant(4), |(_, point)| {
-            point.rmse.value * point.rmse.value * point.seconds.value
-        })
+        .number("MSE x seconds", Significant(4), |(_, point)| point.rmse.value * point.rmse.value * point.seconds.value)
         .end()
 }
 
@@ -262,12 +265,8 @@ mod tests {
             let factor = 1.0 + 0.01 * (f64::from(seed) - 5.0);
             let (mse, seconds) = (0.36 * factor / f64::from(spp), 0.02 * f64::from(spp));
             let serial = Record { spp, seed: seed.into(), mse: Some(mse), makespan_s: Some(seconds), ..row() };
-            let parallel = Record {
-                strategy: "pool".to_string(),
-                threads: 2,
-                makespan_s: Some(0.5 * seconds),
-                ..serial.clone()
-            };
+            let parallel =
+                Record { strategy: "pool".to_string(), threads: 2, makespan_s: Some(0.5 * seconds), ..serial.clone() };
             let elsewhere = Record { scene: "sky".to_string(), scene_hash: "1".to_string(), ..serial.clone() };
             rows.extend([serial, parallel, elsewhere]);
         }

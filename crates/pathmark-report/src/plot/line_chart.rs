@@ -214,9 +214,8 @@ impl LineChart {
         }
         let mut lost = 0;
         for (index, series) in own() {
-            lost += drawing.part(PartKind::Series, &series.name, |drawing| {
-                self.draw_series(drawing, frame, &first_alike, index)
-            });
+            lost += drawing
+                .part(PartKind::Series, &series.name, |drawing| self.draw_series(drawing, frame, &first_alike, index));
         }
         for (point, word) in &self.words {
             if let Some((x, y)) = frame.spot(point.x, point.y) {
