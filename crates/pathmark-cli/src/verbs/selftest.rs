@@ -1,18 +1,18 @@
 //! `pathmark selftest`: the hard cases on this machine, and the costs of guarding against them.
 
 use super::prelude::*;
-use crate::check::guards::{GUARDS, Guard};
+use crate::check::guards::{GUARDS, Guard, GuardTimes};
 use crate::check::{self, Case, Effort, Outcome, SECTIONS, case_row};
 use crate::console::output::lock_folder;
 use crate::experiment::{MACHINE, RunFile, read_run_file};
 use crate::guard_prices::{FILE, FOLDER, PriceRow, read_prices, write_prices};
 use crate::lock::{Lock, Sharing};
-use crate::measure::{Interleaved, available_threads};
+use crate::measure::available_threads;
 use crate::{cases_file, report};
 use std::process::Command;
 
 /// Processes that time the guards.
-const PROCESSES: u64 = 4;
+const PROCESSES: u64 = 8;
 
 /// `pathmark selftest --thorough`
 #[derive(Args)]
@@ -45,7 +45,7 @@ struct Row<'a> {
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     if arguments.guard_times {
-        return print_json(&GUARDS.iter().map(Guard::times).collect::<Vec<_>>());
+        return print_json(&GUARDS.iter().map(Guard::times).collect::<Result<Vec<_>>>()?);
     }
     let chosen = chosen(&arguments.cases)?;
     let _lock = arguments.out.as_ref().map(|out| folder_for_results(out)).transpose()?;
@@ -162,6 +162,9 @@ fn price_list(rows: &[PriceRow]) -> String {
             (Some(ratio), Some(low), Some(high)) => format!("{ratio:.2} times the time ({low:.2} to {high:.2})"),
             _ => "not timed".to_string(),
         };
+        let times = row.share.map_or(times.clone(), |share| {
+            format!("{times}, {:+.1} % of a sample of {} ({})", 100.0 * share, row.scene, row.often)
+        });
         lines.push(format!("  {}: {} instead of {}, {times}", row.guard, row.with, row.without));
         lines.push(format!("    {}: {:.3e} instead of {:.3e}", row.error, row.error_with, row.error_without));
     }
@@ -203,13 +206,13 @@ pub(super) fn has_prices(out: &Path) -> bool {
 /// Measures all guards in several processes: a process has one memory layout, which may favour one of two methods.
 pub(super) fn price_guards(console: &Console) -> Vec<PriceRow> {
     console.begin("guards", PROCESSES);
-    let mut processes: Vec<Vec<Interleaved>> = vec![Vec::new(); GUARDS.len()];
+    let mut processes: Vec<Vec<GuardTimes>> = vec![Vec::new(); GUARDS.len()];
     for done in 1..=PROCESSES {
         let own =
             std::env::current_exe().and_then(|own| Command::new(own).args(["selftest", "--guard-times"]).output());
-        let times = own.ok().and_then(|output| serde_json::from_slice::<Vec<Option<Interleaved>>>(&output.stdout).ok());
+        let times = own.ok().and_then(|output| serde_json::from_slice::<Vec<GuardTimes>>(&output.stdout).ok());
         for (all, own) in processes.iter_mut().zip(times.into_iter().flatten()) {
-            all.extend(own);
+            all.push(own);
         }
         console.advance(done);
     }

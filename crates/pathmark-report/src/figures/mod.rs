@@ -12,6 +12,7 @@ mod clamp_bias;
 mod clock;
 mod contact_sheet;
 mod cost_map;
+mod effect_steps;
 mod effects;
 mod equal_time;
 mod error_against_time;

@@ -43,9 +43,9 @@ impl<'a> Renderer<'a> {
         joined([self.image.clone(), self.schedule.label()])
     }
 
-    /// The property that colours stand for; dashes stand for the threads.
-    fn colour(&self) -> (&str, &str) {
-        (&self.image, &self.schedule.name)
+    /// The property that dashes stand for.
+    fn threads(&self) -> usize {
+        self.schedule.key.threads
     }
 }
 
@@ -117,11 +117,19 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let text = "There is no error against time: it takes errors against references.";
         return Ok(vec![Block::notice(text)]);
     };
-    let colours: BTreeSet<(&str, &str)> = lines.iter().map(|line| line.of.colour()).collect();
-    let dashes: BTreeSet<usize> = lines.iter().map(|line| line.of.schedule.key.threads).collect();
+    let of_image: BTreeSet<(Setting<'_>, &str, usize)> =
+        lines.iter().map(|line| (line.of.setting, line.of.image.as_str(), line.of.threads())).collect();
+    // Where dashes tell the schedules of an image apart, they have one colour.
+    let is_by_image = of_image.len() == lines.len();
+    let colour = |line: &Line<'_>| {
+        let schedule = if is_by_image { "" } else { line.of.schedule.name.as_str() };
+        (line.of.image.clone(), schedule.to_string())
+    };
+    let colours: BTreeSet<(String, String)> = lines.iter().map(colour).collect();
+    let dashes: BTreeSet<usize> = lines.iter().map(|line| line.of.threads()).collect();
     let series = |line: &&Line<'_>| {
-        let dash = dashes.iter().position(|threads| *threads == line.of.schedule.key.threads).unwrap_or(0);
-        let colour = colours.iter().position(|own| *own == line.of.colour()).unwrap_or(0);
+        let dash = dashes.iter().position(|threads| *threads == line.of.threads()).unwrap_or(0);
+        let colour = colours.iter().position(|own| *own == colour(line)).unwrap_or(0);
         Series::new(line.of.name(), Look::of(colour, dash), line.points.iter().map(MeasuredPoint::point).collect())
     };
     let chart = |lines: &[&Line<'_>]| {
@@ -144,7 +152,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         title: title(&lines),
         subtitle: format!("{}, {}x{}, {}", main.0, main.1, main.2, results.run.machine.line()),
         caption: format!(
-            "Numbers beside points: samples per pixel. Horizontal bars: time over processes; vertical bars: RMSE over seeds, at least {seeds}, 95 % confidence. Time: {}",
+            "Numbers beside points: samples per pixel. Vertical: RMSE over seeds, at least {seeds}, 95 % confidence. Horizontal: time over processes. {}",
             bars(lines.iter().flat_map(|line| line.points.iter().map(|point| point.seconds)))
         ),
         words: slowest(shown),
@@ -240,4 +248,51 @@ fn points(lines: &[Line<'_>]) -> Block {
         .number("seeds", Decimals(0), |(_, point)| count(&point.rmse))
         .number("MSE x seconds", Significant(4), |(_, point)| point.rmse.value * point.rmse.value * point.seconds.value)
         .end()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::figures::blocks;
+    use crate::measure::Record;
+    use crate::tests::{results, row, svg, table};
+
+    /// RMSE = .6 / sqrt(n) and t = .02 n on one thread, half of that on two: an RMSE of .1 takes 36 samples, and errors
+    /// below .6 / sqrt(64) were not reached.
+    fn closed_form() -> Vec<Record> {
+        let mut rows = Vec::new();
+        for (spp, seed) in [8, 16, 32, 64].into_iter().flat_map(|spp| (1..=9_u32).map(move |seed| (spp, seed))) {
+            // Seeds from 4 % below to 4 % above.
+            let factor = 1.0 + 0.01 * (f64::from(seed) - 5.0);
+            let (mse, seconds) = (0.36 * factor / f64::from(spp), 0.02 * f64::from(spp));
+            let serial = Record { spp, seed: seed.into(), mse: Some(mse), makespan_s: Some(seconds), ..row() };
+            let parallel =
+                Record { strategy: "pool".to_string(), threads: 2, makespan_s: Some(0.5 * seconds), ..serial.clone() };
+            let elsewhere = Record { scene: "sky".to_string(), scene_hash: "1".to_string(), ..serial.clone() };
+            rows.extend([serial, parallel, elsewhere]);
+        }
+        rows
+    }
+
+    #[test]
+    fn prices_are_interpolated_and_never_extrapolated() {
+        let results = results(&["rmse-against-time"], "", closed_form()).unwrap();
+        let blocks = blocks(&results).unwrap();
+        let prices: Vec<Vec<String>> = table(&blocks).rows().collect();
+        let of = |scene: &str, renderer: &str, goal: &str| {
+            let found = prices.iter().find(|row| row[0] == scene && row[1].contains(renderer) && row[2] == goal);
+            found.unwrap_or_else(|| panic!("{scene} {renderer} {goal}: {prices:?}"))
+        };
+        for (renderer, seconds) in [("serial", 0.72), ("pool", 0.36)] {
+            let own = of("cornell", renderer, "0.1");
+            let value: f64 = own[3].split(',').next().unwrap().parse().unwrap();
+            assert!((value / seconds - 1.0).abs() < 2e-3, "{own:?}");
+            assert!(own[3].contains("to") && own[4] == "9" && own[5] == "between 32 and 64 spp", "{own:?}");
+            let beyond = of("cornell", renderer, "0.05");
+            assert!(beyond[5].starts_with("not measured: not reached at 64 spp"), "{beyond:?}");
+        }
+        let figure = svg(&blocks, "rmse-against-time");
+        assert!(figure.contains("Half the error costs 4.0 times the seconds"));
+        // Both scenes have a panel, and the points of one line tell their samples.
+        assert!(figure.contains("sky, 8x6") && figure.contains("\n16\n") && figure.contains("\n64\n"));
+    }
 }
