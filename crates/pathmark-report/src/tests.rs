@@ -313,7 +313,7 @@ fn errors_of_display_values_are_drawn_where_an_experiment_asks_for_them() {
         let (mse, mse_display) = (Some(4.0 * noise), Some(noise / f64::from(spp)));
         Record { spp, seed, mse, mse_display, cell: format!("{spp}/{seed}"), ..row() }
     };
-    let rows: Vec<Record> = [4, 16, 64].into_iter().flat_map(|spp| [at(spp, 1), at(spp, 2)]).collect();
+    let rows: Vec<Record> = [4, 16, 64, 256].into_iter().flat_map(|spp| [at(spp, 1), at(spp, 2)]).collect();
     let told = |options: &str| {
         let results = results(&["rmse-against-spp"], options, rows.clone()).unwrap();
         words(&blocks(&results).unwrap())

@@ -7,7 +7,7 @@ use super::*;
 use crate::cases_file::{self, CaseRow};
 use crate::error::Error;
 use crate::experiment::{Cell, Definition, Profile};
-use crate::guard_prices::{self, PriceRow};
+use crate::guard_prices;
 use crate::measure::Record;
 use crate::tests::{folder_of, row};
 use std::collections::BTreeMap;
@@ -549,25 +549,11 @@ fn cases_and_guards_judge_both_ways() {
         cases_file::write(out.path(), &[case("C1", 0), case("C2", failed)]).unwrap();
         let prices = out.path().join(guard_prices::FOLDER);
         std::fs::create_dir(&prices).unwrap();
-        let row = PriceRow {
-            guard: "g".to_string(),
-            error: String::new(),
-            with: String::new(),
-            without: String::new(),
-            error_with: error,
-            error_with_low: 0.9 * error,
-            error_with_high: 1.1 * error,
-            error_without: 1.0,
-            error_without_low: 1.0,
-            error_without_high: 1.0,
-            operation: String::new(),
-            ns_with: None,
-            ns_without: None,
-            time_ratio: None,
-            time_ratio_low: None,
-            time_ratio_high: None,
-        };
-        guard_prices::write_prices(&prices.join(guard_prices::FILE), &[row]).unwrap();
+        // A file of the first version, which has fewer columns.
+        let head = "guard,error,with,without,error_with,error_with_low,error_with_high,error_without,error_without_low,\
+                    error_without_high,operation,ns_with,ns_without,time_ratio,time_ratio_low,time_ratio_high";
+        let text = format!("{head}\ng,,,,{error},{},{},1,1,1,,,,,,\n", 0.9 * error, 1.1 * error);
+        std::fs::write(prices.join(guard_prices::FILE), text).unwrap();
         out
     };
     let of = |folders: &[&tempfile::TempDir], evidence: &str| {
