@@ -236,11 +236,7 @@ impl<'a> Rows<'a> {
     /// rows are of pairs, or those of other cells, in the same repetition. Partners may differ only in columns that the
     /// conditions name, and in those that change with them.
     fn ratios(&self, over: &Conditions, column: &str) -> Result<Vec<(Item<'a>, f64)>> {
-        let named: BTreeSet<&str> = self.query.rows.columns().chain(over.columns()).collect();
-        let followers = FOLLOWERS.iter().filter(|(column, _)| named.contains(column)).flat_map(|(_, others)| *others);
-        let free: BTreeSet<&str> = named.iter().copied().chain(followers.copied()).collect();
-        let identity: Vec<&str> =
-            image_columns().chain(schedule_columns()).filter(|column| !free.contains(column)).collect();
+        let identity = identity(self.query.rows, over);
         let key = |item: &Item<'_>, turn: Turn| {
             (item.run, identity.iter().map(|column| text(item.columns, column)).collect::<Vec<String>>(), turn)
         };
@@ -283,6 +279,14 @@ impl<'a> Rows<'a> {
         let slopes = lines.values().filter_map(|points| Some(log_log(points, level)?.slope.value));
         Measurement::typical(&slopes.collect::<Vec<f64>>(), Scale::Linear, self.stopping, level, unit.noun())
     }
+}
+
+/// The columns that partners share: those of image and schedule that the conditions leave alone.
+pub(super) fn identity(rows: &Conditions, over: &Conditions) -> Vec<&'static str> {
+    let named: BTreeSet<&str> = rows.columns().chain(over.columns()).collect();
+    let followers = FOLLOWERS.iter().filter(|(column, _)| named.contains(column)).flat_map(|(_, others)| *others);
+    let free: BTreeSet<&str> = named.iter().copied().chain(followers.copied()).collect();
+    image_columns().chain(schedule_columns()).filter(|column| !free.contains(column)).collect()
 }
 
 /// A run, a cell and a turn.

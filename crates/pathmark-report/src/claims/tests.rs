@@ -1,6 +1,7 @@
-use super::condition::{Columns, columns};
+use super::condition::{Columns, Conditions, columns, text};
 use super::definition::Test;
 use super::judge::Age;
+use super::measure::identity;
 use super::measurement::{Measurement, Rule};
 use super::statistic::{Kind, Statistic};
 use super::*;
@@ -10,7 +11,7 @@ use crate::experiment::{Cell, Definition, Profile};
 use crate::guard_prices;
 use crate::measure::Record;
 use crate::tests::{folder_of, row};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 const HEAD: &str = "report = \"X\"\ntitle = \"T\"\nabout = \"Who.\"\n";
 
@@ -326,7 +327,8 @@ fn is_in_list(text: &str, id: u32) -> bool {
     list.split(|c: char| c == ',' || c.is_whitespace()).any(|number| number.parse() == Ok(id))
 }
 
-/// Every query matches rows that a sweep of the quick profile or of the reports' profile will write.
+/// Every query matches rows that a sweep of the quick profile or of the reports' profile will write, and some of them have
+/// partners.
 #[test]
 fn each_query_asks_for_rows_of_an_experiment() {
     let lab = Lab::built_in();
@@ -345,6 +347,16 @@ fn each_query_asks_for_rows_of_an_experiment() {
             Kind::PairedRatio { over, .. } | Kind::Speedup { over, .. } | Kind::MeanRatio { over, .. } => Some(over),
             _ => None,
         };
+        if let Some(over) = other.filter(|_| !matches!(kind, Kind::MeanRatio { .. })) {
+            let shared = identity(wanted, over);
+            let keys = |conditions: &Conditions| -> BTreeSet<Vec<String>> {
+                let rows = own.iter().filter(|row| conditions.admit(row));
+                rows.map(|row| shared.iter().map(|column| text(row, column)).collect()).collect()
+            };
+            if keys(wanted).is_disjoint(&keys(over)) {
+                unmet.push(format!("{}: {experiment} where {wanted} beside {over}", claim.id));
+            }
+        }
         for conditions in std::iter::once(wanted).chain(other) {
             if !own.iter().any(|row| conditions.admit(row)) {
                 unmet.push(format!("{}: {experiment} where {conditions}", claim.id));
