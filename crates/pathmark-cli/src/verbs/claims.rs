@@ -32,6 +32,8 @@ struct Row<'a> {
     verdict: &'static str,
     expected: &'a str,
     measured: String,
+    /// The rule that made the value and its interval, with the number of units.
+    rule: String,
     predicted: String,
     why: &'a str,
     runs: String,
@@ -92,6 +94,7 @@ fn row<'a>(answer: &'a Answer<'_>) -> Row<'a> {
         verdict: answer.verdict.name(),
         expected: &answer.claim.expected,
         measured: answer.measured(),
+        rule: answer.rule(),
         predicted: answer.predicted(),
         why: &answer.why,
         runs: answer.in_runs(),

@@ -189,7 +189,7 @@ impl Measurement {
             Rule::Jackknife => format!("{units}, interval by leaving out one after the other"),
             Rule::Ranks => format!("{units}, interval by Fisher's transformation"),
             Rule::Exact => format!("{units}, no error"),
-            Rule::Hull => format!("{units}, interval of that table"),
+            Rule::Hull => format!("{units}, interval of the table or forecast"),
         }
     }
 }
