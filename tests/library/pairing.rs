@@ -53,6 +53,7 @@ const EXCEPTIONS: &[(&str, &str, &[&str])] = &[
         "the price along one line, whose points differ in samples on purpose; the price at a given error",
         &["most / values", "median(values)? / (goal * goal)"],
     ),
+    ("figures/time_against_spp.rs", "seconds of one row over its samples", &["row.makespan_s? / f64::from(row.spp)"]),
     ("figures/price_list.rs", "the inverse of one estimate", &["renderer.efficiency()?.times(&renderer"]),
     (
         "figures/roulette.rs",

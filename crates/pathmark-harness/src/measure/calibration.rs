@@ -14,7 +14,7 @@ use super::available_threads;
 use super::usage::Usage;
 use crate::analysis::quantile::median;
 use crate::csv_file;
-use crate::error::{Error, Result};
+use crate::error::{Error, InputError, Result};
 use crate::lab::Lab;
 use crate::strategy::{Config, Spawner, SystemThreads, Workers};
 use serde::{Deserialize, Serialize};
@@ -145,8 +145,29 @@ pub fn write_calibrations(lab: &Lab, path: &Path, wanted: u32) -> Result<()> {
     csv_file::write(path, rows)
 }
 
+/// Each calibration of a file is replayed, so a number above this is a damaged file.
+const MOST: u32 = 1000;
+
 pub fn read_calibration(path: &Path) -> Result<Vec<CalibrationRow>> {
-    csv_file::read(path)
+    let rows: Vec<CalibrationRow> = csv_file::read(path)?;
+    match rows.iter().position(|row| row.calibration >= MOST) {
+        None => Ok(rows),
+        Some(index) => {
+            let error = InputError::new("calibration", rows[index].calibration.to_string(), "is too large");
+            let allowed = error.allowed(format!("at most {}", MOST - 1));
+            Err(allowed.in_file(path.display().to_string(), Some((index + 2, 1))).into())
+        }
+    }
+}
+
+/// The calibrations of several files, numbered one after the other.
+pub fn joined_calibrations(files: Vec<Vec<CalibrationRow>>) -> Vec<CalibrationRow> {
+    let mut joined: Vec<CalibrationRow> = Vec::new();
+    for rows in files {
+        let first = joined.iter().map(|row| row.calibration + 1).max().unwrap_or(0);
+        joined.extend(rows.into_iter().map(|row| CalibrationRow { calibration: first + row.calibration, ..row }));
+    }
+    joined
 }
 
 /// 1, 2, 4 and so on below `most`, and `most`.
@@ -210,10 +231,36 @@ mod tests {
     /// A file of an earlier version has no column for the calibration.
     #[test]
     fn an_older_file_is_one_calibration() {
-        let text = "strategy,threads,jobs,seconds,cpu_s,started\nserial,1,200,0.5,,0\n";
-        let read: std::result::Result<Vec<CalibrationRow>, _> =
-            csv::Reader::from_reader(text.as_bytes()).deserialize().collect();
-        assert_eq!(read.unwrap()[0].calibration, 0);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("calibration.csv");
+        std::fs::write(&path, "strategy,threads,jobs,seconds,cpu_s,started\nserial,1,200,0.5,,0\n").unwrap();
+        assert_eq!(read_calibration(&path).unwrap()[0].calibration, 0);
+    }
+
+    #[test]
+    fn a_damaged_number_is_refused_with_its_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("calibration.csv");
+        let rows = "serial,1,200,0.5,,0,999\nserial,1,200,0.5,,0,4294967295\n";
+        std::fs::write(&path, format!("strategy,threads,jobs,seconds,cpu_s,started,calibration\n{rows}")).unwrap();
+        let error = read_calibration(&path).unwrap_err().to_string();
+        assert!(error.contains("calibration.csv:3") && error.contains("at most 999"), "{error}");
+    }
+
+    #[test]
+    fn joined_calibrations_stay_apart() {
+        let row = |calibration: u32, seconds: f64| CalibrationRow {
+            strategy: "serial".to_owned(),
+            threads: 1,
+            jobs: 200,
+            seconds,
+            cpu_s: None,
+            started: 0,
+            calibration,
+        };
+        let joined = joined_calibrations(vec![vec![row(0, 1.0), row(1, 2.0)], vec![], vec![row(0, 3.0), row(1, 4.0)]]);
+        let told: Vec<(u32, f64)> = joined.iter().map(|row| (row.calibration, row.seconds)).collect();
+        assert_eq!(told, [(0, 1.0), (1, 2.0), (2, 3.0), (3, 4.0)]);
     }
 
     /// A second call adds the missing calibrations, and a third one changes nothing.

@@ -8,6 +8,7 @@ use crate::analysis::quantile::median;
 use crate::lab::Lab;
 use crate::measure::CalibrationRow;
 use crate::strategy::{ChunkRule, Discipline};
+use std::collections::BTreeMap;
 
 /// A discipline with a name and its mechanism's cost.
 #[derive(Debug, Clone)]
@@ -97,18 +98,16 @@ pub fn contenders(lab: &Lab, rows: &[CalibrationRow]) -> Vec<Contender> {
 }
 
 /// The rows by their keys, in the order of each key's first row.
-fn gathered<'a, K: PartialEq>(
+fn gathered<'a, K: Ord>(
     rows: &'a [CalibrationRow],
     key: impl Fn(&'a CalibrationRow) -> K,
 ) -> Vec<Vec<&'a CalibrationRow>> {
-    let mut groups: Vec<(K, Vec<&CalibrationRow>)> = Vec::new();
-    for row in rows {
-        let own = key(row);
-        match groups.iter_mut().find(|(key, _)| *key == own) {
-            Some((_, group)) => group.push(row),
-            None => groups.push((own, vec![row])),
-        }
+    let mut groups: BTreeMap<K, (usize, Vec<&CalibrationRow>)> = BTreeMap::new();
+    for (index, row) in rows.iter().enumerate() {
+        groups.entry(key(row)).or_insert_with(|| (index, Vec::new())).1.push(row);
     }
+    let mut groups: Vec<(usize, Vec<&CalibrationRow>)> = groups.into_values().collect();
+    groups.sort_by_key(|(first, _)| *first);
     groups.into_iter().map(|(_, group)| group).collect()
 }
 
