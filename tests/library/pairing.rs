@@ -50,8 +50,8 @@ const EXCEPTIONS: &[(&str, &str, &[&str])] = &[
     ),
     (
         "figures/rmse_against_time.rs",
-        "the price along one line, whose points differ in samples on purpose; the price at a given error",
-        &["most / values", "median(values)? / (goal * goal)"],
+        "the slope along one line, whose points differ in samples on purpose",
+        &["first.rmse.value / last", "last.seconds.value / first", "longer / octaves"],
     ),
     ("figures/time_against_spp.rs", "seconds of one row over its samples", &["row.makespan_s? / f64::from(row.spp)"]),
     ("figures/price_list.rs", "the inverse of one estimate", &["renderer.efficiency()?.times(&renderer"]),

@@ -9,7 +9,7 @@ pub(super) const GUARD: Guard = Guard {
     name: "double precision",
     error: "mean distance of a hit from the walls of smallpt's box, scene units",
     operation: "a ray against a sphere",
-    in_render: InRender { scene: "cornell", often: Often::Primitive(1.0) },
+    in_render: InRender { scene: "cornell", often: Often::Test(1.0) },
     with: Variant { name: "f64", error: error::<f64>, work: work::<f64> },
     without: Variant { name: "f32", error: error::<f32>, work: work::<f32> },
 };

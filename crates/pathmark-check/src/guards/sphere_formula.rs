@@ -11,7 +11,7 @@ pub(super) const GUARD: Guard = Guard {
     name: "sphere formula",
     error: "share of roots outside the bound, spheres of 1e-6 to 1e8 up to 1e8 radii away",
     operation: "a ray against a sphere",
-    in_render: InRender { scene: "cornell", often: Often::Primitive(1.0) },
+    in_render: InRender { scene: "cornell", often: Often::Test(1.0) },
     with: Variant {
         name: "closest approach, c/q",
         error: || error(|f, d, r| roots(f, d, 1.0, r)),

@@ -11,7 +11,7 @@ pub(super) const GUARD: Guard = Guard {
     name: "watertight triangles",
     error: "share of rays at shared edges that pass between the triangles of a closed mesh",
     operation: "a ray against 80 triangles",
-    in_render: InRender { scene: "cornell-mesh", often: Often::Primitive(1.0 / 80.0) },
+    in_render: InRender { scene: "cornell-mesh", often: Often::Test(1.0 / 80.0) },
     with: variant!("Woop, Benthin and Wald", error, work, watertight),
     without: variant!("Möller and Trumbore", error, work, plain),
 };

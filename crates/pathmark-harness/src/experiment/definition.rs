@@ -42,8 +42,11 @@ pub(super) const REFERENCE_SPP: &str = "reference-spp";
 const TAKEN: &[&str] = &["CLAIMS.md", "benches", "check", "claims", "earlier", "guards", "references", "report.html"];
 
 /// The features that not every build has, and whether this one has them. An experiment may require them.
-pub(super) const FEATURES: [(&str, bool); 2] =
-    [("openmp", cfg!(feature = "openmp")), ("more-pools", cfg!(feature = "more-pools"))];
+pub(super) const FEATURES: [(&str, bool); 3] = [
+    ("openmp", cfg!(feature = "openmp")),
+    ("more-pools", cfg!(feature = "more-pools")),
+    ("lane-profiles", cfg!(feature = "lane-profiles")),
+];
 
 /// A chapter of the report page. Each experiment names its chapter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Deserialize)]

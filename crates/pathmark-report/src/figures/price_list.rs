@@ -100,3 +100,27 @@ fn checked(checks: &[(&Contender, Option<Check>)]) -> Option<Block> {
          seconds {time:+.1} % ({by_time}) of what was predicted. Half of an error costs four times the seconds with independent samples."
     )))
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::figures::blocks;
+    use crate::measure::Record;
+    use crate::tests::{results, row, svg};
+
+    /// MSE = 1/n up to 16 samples: an RMSE of .5 lies within the curve, one of .2 beyond it.
+    #[test]
+    fn extrapolated_prices_are_hollow() {
+        let mut rows = Vec::new();
+        for (seed, spp) in (1..=3_u32).flat_map(|seed| [1, 4, 16].map(|spp| (seed, spp))) {
+            let mse = (1.0 + 0.01 * f64::from(seed)) / f64::from(spp);
+            let makespan_s = Some(f64::from(spp) * (1.0 + 0.01 * f64::from(seed)));
+            rows.push(Record { seed: seed.into(), spp, mse: Some(mse), makespan_s, ..row() });
+        }
+        let figure = |goals: &str| {
+            let options = format!("[figure.price-list]\ngoals = {goals}");
+            svg(&blocks(&results(&["price-list"], &options, rows.clone()).unwrap()).unwrap(), "price-list")
+        };
+        assert!(figure("[0.5, 0.2]").contains("Hollow: extrapolated beyond the measured samples, 1 of 2 prices"));
+        assert!(figure("[0.5]").contains("Every price lies within the measured samples"));
+    }
+}
