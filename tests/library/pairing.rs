@@ -17,7 +17,8 @@ const EXCEPTIONS: &[(&str, &str, &[&str])] = &[
         "conditions of a claim: samples or pixels asked for and run",
         &["own.parse::<f64>().ok()? / wanted"],
     ),
-    ("claims/measure.rs", "two columns of one row", &["number(row, above)? / number(row, below)?"]),
+    ("claims/measure.rs", "columns of one row", &["sum / below"]),
+    ("claims/measurement.rs", "a half width over the quantile that made it", &["(units as f64).sqrt() / t"]),
     (
         "contenders.rs",
         "means over seeds; measured over predicted; seconds of one row over its samples",
@@ -49,9 +50,10 @@ const EXCEPTIONS: &[(&str, &str, &[&str])] = &[
     ),
     (
         "figures/rmse_against_time.rs",
-        "the price along one line, whose points differ in samples on purpose; the price at a given error",
-        &["most / values", "median(values)? / (goal * goal)"],
+        "the slope along one line, whose points differ in samples on purpose",
+        &["first.rmse.value / last", "last.seconds.value / first", "longer / octaves"],
     ),
+    ("figures/time_against_spp.rs", "seconds of one row over its samples", &["row.makespan_s? / f64::from(row.spp)"]),
     ("figures/price_list.rs", "the inverse of one estimate", &["renderer.efficiency()?.times(&renderer"]),
     (
         "figures/roulette.rs",

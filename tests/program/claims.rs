@@ -3,13 +3,18 @@
 use crate::experiment::{TINY, write_tiny};
 use crate::program::{finish, in_memory, pathmark};
 use crate::snapshot::{assert_untouched, snapshot};
+use pathmark::experiment::RunFile;
 use std::fs;
 use std::path::Path;
+
+/// The claims of all reports.
+const CLAIMS: usize = 85;
 
 /// A folder whose `out` has the rows of a small experiment under the name of a large one.
 fn with_rows() -> tempfile::TempDir {
     let folder = in_memory();
-    write_tiny(folder.path(), TINY);
+    let rows = TINY.replace("tiles:8x8", "rows").replace("static-blocks", "thread-per-row");
+    write_tiny(folder.path(), &rows);
     fs::rename(folder.path().join("tiny.toml"), folder.path().join("thread-scaling.toml")).unwrap();
     finish(pathmark(folder.path(), &["run", "thread-scaling.toml", "--out", "out"])).with_code(0);
     folder
@@ -30,7 +35,7 @@ fn small_images_do_not_judge_a_report_and_are_told_as_such() {
     assert_untouched(&before, &snapshot(folder.path()));
     assert!(!folder.path().join("out/CLAIMS.md").exists() && !folder.path().join("out/claims").exists());
     assert_eq!(listing(folder.path(), &["--out", "out"]), verdicts);
-    assert_eq!(verdicts.len(), 72);
+    assert_eq!(verdicts.len(), CLAIMS);
     let from_rows: Vec<&serde_json::Value> = verdicts.iter().filter(|row| row["source"].is_string()).collect();
     assert!(!from_rows.is_empty());
     for row in &from_rows {
@@ -39,14 +44,14 @@ fn small_images_do_not_judge_a_report_and_are_told_as_such() {
         assert!(is_small || row["verdict"] != "not-comparable", "{row}");
     }
     let text = fs::read_to_string(folder.path().join("out/CLAIMS.md")).unwrap();
-    assert_eq!(text.matches("\n### ").count(), 72);
+    assert_eq!(text.matches("\n### ").count(), CLAIMS);
     let table = csv::Reader::from_path(folder.path().join("out/claims/claims.csv")).unwrap();
-    assert_eq!(table.into_records().map(Result::unwrap).count(), 72);
+    assert_eq!(table.into_records().map(Result::unwrap).count(), CLAIMS);
     let page = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
     let (claims, experiment) = (page.find("id=\"claims\"").unwrap(), page.find("id=\"thread-scaling\"").unwrap());
     assert!(claims < experiment, "the claims come first");
     // No verdict can be unexpected, because nothing was measured at the report's size.
-    assert_eq!(listing(folder.path(), &["--strict"]).len(), 72);
+    assert_eq!(listing(folder.path(), &["--strict"]).len(), CLAIMS);
 }
 
 #[test]
@@ -54,7 +59,7 @@ fn the_claims_of_one_report_are_printed_alone() {
     let folder = with_rows();
     let before = snapshot(folder.path());
     let verdicts = listing(folder.path(), &["--report", "A"]);
-    assert!(verdicts.len() < 72 && verdicts.iter().all(|row| row["report"] == "A"));
+    assert!(verdicts.len() < CLAIMS && verdicts.iter().all(|row| row["report"] == "A"));
     assert_untouched(&before, &snapshot(folder.path()));
 }
 
@@ -105,4 +110,33 @@ fn a_report_is_the_same_each_time() {
     assert!(pictures > 0);
     report();
     assert_untouched(&before, &snapshot(folder.path()));
+}
+
+/// A claim's bound that is younger than the rows which it judges, or rows without a time, fail `--strict`.
+#[test]
+fn strict_asks_for_bounds_that_are_older_than_their_rows() {
+    let folder = in_memory();
+    let cases = folder.path().join("out/check");
+    fs::create_dir_all(&cases).unwrap();
+    let head = "id,tries,pass,trials,failed,variant,expected,found,skipped";
+    fs::write(cases.join("cases.csv"), format!("{head}\nP20,grid,true,1,0,v,1,1,\n")).unwrap();
+    let strict = || pathmark(folder.path(), &["claims", "out", "--strict"]);
+    let machine = |started: &str| {
+        let run = RunFile { started_utc: started.to_string(), ..RunFile::of_now("pathmark selftest".to_string()) };
+        run.write(&cases.join("machine.toml")).unwrap();
+    };
+    let refused = |why: &str| {
+        let told = finish(strict()).with_code(1);
+        assert!(told.err.contains("claims 43 have bounds that are not older"), "{why}: {}", told.err);
+        assert!(told.out.contains(why), "{}", told.out);
+    };
+    refused("rows without a time");
+    machine("2026-11-01T00:00:00Z");
+    refused("bound younger than its rows");
+    machine("9999-01-01T00:00:00Z");
+    let told = finish(strict()).with_code(0).out;
+    assert!(told.contains("bound older than its rows"), "{told}");
+    // An unexpected verdict fails, too.
+    fs::write(cases.join("cases.csv"), format!("{head}\nP20,grid,false,1,1,v,1,2,\n")).unwrap();
+    assert!(finish(strict()).with_code(1).err.contains("claims 43 have unexpected verdicts"));
 }

@@ -22,6 +22,12 @@ impl Interval {
         (low.is_finite() && high.is_finite() && low <= high).then_some(Self { low, high, level })
     }
 
+    /// The confidence in percent as every text tells it: rounded down to one decimal, so that it is never told larger than it is.
+    /// Binomial sums may give a half as .4999999, which still counts as a half.
+    pub fn percent(&self) -> f64 {
+        (self.level * 1000.0 + 1e-6).floor() / 10.0
+    }
+
     /// Whether `value` lies in the interval, ends included.
     pub fn contains(&self, value: f64) -> bool {
         self.low <= value && value <= self.high
@@ -77,6 +83,12 @@ mod tests {
         let interval = Interval::around(2.0, 0.5, 0.95).unwrap();
         assert!(interval.contains(1.5) && interval.contains(2.5));
         assert!(!interval.contains(2.51) && !interval.contains(f64::NAN));
+    }
+
+    #[test]
+    fn a_confidence_is_not_told_larger_than_it_is() {
+        let percent = |level: f64| Interval { low: 0.0, high: 1.0, level }.percent();
+        assert_eq!([0.5 - 1e-12, 0.5, 0.9299, 0.96, 0.96875].map(percent), [50.0, 50.0, 92.9, 96.0, 96.8]);
     }
 
     #[test]

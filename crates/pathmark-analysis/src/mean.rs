@@ -62,11 +62,13 @@ impl Moments {
 
 /// The half width, in standard errors, of a two-sided interval with this `level`: 2.776 for 95 % and 4 degrees of freedom.
 pub fn t_quantile(level: f64, degrees_of_freedom: usize) -> Option<f64> {
-    if !is_level(level) || degrees_of_freedom == 0 {
-        return None;
-    }
-    let distribution = StudentsT::new(0.0, 1.0, degrees_of_freedom as f64).ok()?;
-    Some(distribution.inverse_cdf(0.5 + 0.5 * level)).filter(|t| t.is_finite())
+    fractional_t_quantile(level, degrees_of_freedom as f64)
+}
+
+/// [`t_quantile`] for degrees of freedom that are no whole number.
+fn fractional_t_quantile(level: f64, degrees_of_freedom: f64) -> Option<f64> {
+    let law = StudentsT::new(0.0, 1.0, degrees_of_freedom).ok().filter(|_| is_level(level))?;
+    Some(law.inverse_cdf(0.5 + 0.5 * level)).filter(|t| t.is_finite())
 }
 
 /// The mean with its t-interval; `None` below two values, without spread, or with a value that is not finite.
@@ -89,6 +91,45 @@ pub fn geometric_interval(values: &[f64], level: f64) -> Option<Estimate> {
     let Estimate { value, interval } = t_interval(&logarithms, level)?;
     let interval = Interval::between(libm::exp(interval.low), libm::exp(interval.high), level)?;
     Some(Estimate { value: libm::exp(value), interval })
+}
+
+/// The ratio of the means of two independent samples, with Student's interval of its logarithm and the degrees of freedom of B. L.
+/// Welch, "The generalization of 'Student's' problem when several different population variances are involved", Biometrika 34
+/// (1947). `None` below two values on a side, without spread, or for a mean that is not positive.
+///
+/// The whole interval of level 1 - 2 a lies within a margin exactly if both one-sided tests of level a reject a ratio beyond it (D.
+/// J. Schuirmann, "A comparison of the two one-sided tests procedure ...", 1987): then the means are equivalent.
+pub fn mean_ratio(above: &[f64], below: &[f64], level: f64) -> Option<Estimate> {
+    // Mean, squared relative error of the mean, and degrees of freedom.
+    let side = |values: &[f64]| {
+        let moments = Moments::of(values);
+        let mean = moments.mean().filter(|&mean| mean > 0.0)?;
+        let error = moments.standard_error()? / mean;
+        Some((mean, error * error, values.len() as f64 - 1.0))
+    };
+    let ((mean_a, error_a, free_a), (mean_b, error_b, free_b)) = (side(above)?, side(below)?);
+    let variance = Some(error_a + error_b).filter(|&variance| variance > 0.0)?;
+    let degrees_of_freedom = variance * variance / (error_a * error_a / free_a + error_b * error_b / free_b);
+    let factor = libm::exp(fractional_t_quantile(level, degrees_of_freedom)? * variance.sqrt());
+    let value = mean_a / mean_b;
+    Some(Estimate { value, interval: Interval::between(value / factor, value * factor, level)? })
+}
+
+/// The fewest values of this standard deviation for which Student's interval of their mean reaches at most so far to either side;
+/// `None` if a million do not suffice.
+pub fn fewest_values(deviation: f64, half_width: f64, level: f64) -> Option<usize> {
+    let is_enough =
+        |n: usize| t_quantile(level, n - 1).is_some_and(|t| t * deviation / (n as f64).sqrt() <= half_width);
+    // The half width falls with the number of values.
+    let (mut few, mut many) = (1, 1 << 20);
+    if !(deviation >= 0.0 && half_width > 0.0 && is_enough(many)) {
+        return None;
+    }
+    while many - few > 1 {
+        let middle = few.midpoint(many);
+        if is_enough(middle) { many = middle } else { few = middle }
+    }
+    Some(many)
 }
 
 #[cfg(test)]
@@ -140,6 +181,51 @@ mod tests {
             })
             .count();
         assert!((hits as f64 / 4000.0 - 0.95).abs() < 0.0115, "{hits}");
+    }
+
+    /// Relative standard errors: of 1, 2, 3 it is 1 / sqrt(12), of 3, 4, 5, 4 it is 1 / sqrt(96). Welch's degrees of freedom are 2.50515,
+    /// for which Simpson's rule on the density gives t = 3.5694.
+    #[test]
+    fn ratios_of_means_have_the_degrees_of_freedom_of_welch() {
+        let found = mean_ratio(&[1.0, 2.0, 3.0], &[3.0, 4.0, 5.0, 4.0], 0.95).unwrap();
+        let variance: f64 = 1.0 / 12.0 + 1.0 / 96.0;
+        assert!((found.value - 0.5).abs() < 1e-15);
+        let half_width = libm::log(found.interval.high / found.value);
+        assert!((half_width / variance.sqrt() - 3.5694).abs() < 1e-3, "{}", half_width / variance.sqrt());
+        assert!((found.interval.low * found.interval.high - 0.25).abs() < 1e-12);
+        // Equal spreads on both sides have all degrees of freedom: 2 + 2.
+        let equal = mean_ratio(&[9.0, 10.0, 11.0], &[18.0, 20.0, 22.0], 0.95).unwrap();
+        let expected = 2.776_445 * (2.0_f64 * 0.01 / 3.0).sqrt();
+        assert!((libm::log(equal.interval.high / 0.5) - expected).abs() < 1e-6);
+        for wrong in [[1.0].as_slice(), &[1.0, -1.0], &[2.0, f64::NAN]] {
+            assert_eq!((mean_ratio(wrong, &[1.0, 2.0], 0.95), mean_ratio(&[1.0, 2.0], wrong, 0.95)), (None, None));
+        }
+        assert_eq!(mean_ratio(&[1.0, 1.0], &[1.0, 1.0], 0.95), None);
+    }
+
+    /// Two samples of one law with unequal numbers and spreads: the simulation's standard deviation is 0.34 %.
+    #[test]
+    fn ratios_of_means_cover_at_their_level() {
+        let mut generator = Pcg64Dxsm::new(17, 5);
+        let hits = (0..4000).filter(|_| {
+            let mut sample = |count: usize, spread: f64| -> Vec<f64> {
+                (0..count).map(|_| 1.0 + spread * normal(&mut generator)).collect()
+            };
+            let (above, below) = (sample(3, 0.002), sample(6, 0.01));
+            mean_ratio(&above, &below, 0.95).unwrap().interval.contains(1.0)
+        });
+        let hits = hits.count();
+        assert!((hits as f64 / 4000.0 - 0.95).abs() < 0.0115, "{hits}");
+    }
+
+    /// t = 2.2622 with nine degrees of freedom: ten values of deviation 1 reach 0.71536, nine do not.
+    #[test]
+    fn as_many_values_as_a_half_width_needs() {
+        assert_eq!(fewest_values(1.0, 0.7154, 0.95), Some(10));
+        assert_eq!(fewest_values(1.0, 0.7153, 0.95), Some(11));
+        assert_eq!(fewest_values(1.0, 100.0, 0.95), Some(2));
+        assert_eq!((fewest_values(1.0, 1e-9, 0.95), fewest_values(1.0, 0.0, 0.95)), (None, None));
+        assert_eq!((fewest_values(f64::NAN, 1.0, 0.95), fewest_values(1.0, 1.0, 1.0)), (None, None));
     }
 
     #[test]

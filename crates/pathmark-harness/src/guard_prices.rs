@@ -35,6 +35,27 @@ pub struct PriceRow {
     pub time_ratio: Option<f64>,
     pub time_ratio_low: Option<f64>,
     pub time_ratio_high: Option<f64>,
+    /// A scene whose render contains the operation; empty in files of older versions.
+    #[serde(default)]
+    pub scene: String,
+    /// How often, in words.
+    #[serde(default)]
+    pub often: String,
+    /// Operations of a sample.
+    #[serde(default)]
+    pub operations: Option<f64>,
+    /// Nanoseconds of a sample of that render, on one thread with the scalar kernel.
+    #[serde(default)]
+    pub render_ns: Option<f64>,
+    /// The share of the render's time that the guard costs, with its 95 % interval over processes; negative if it saves time.
+    #[serde(default)]
+    pub share: Option<f64>,
+    #[serde(default)]
+    pub share_low: Option<f64>,
+    #[serde(default)]
+    pub share_high: Option<f64>,
+    #[serde(default)]
+    pub processes: Option<usize>,
 }
 
 pub fn write_prices(path: &Path, rows: &[PriceRow]) -> Result<()> {

@@ -117,12 +117,16 @@ fn renderer(seeds: &[(Curve, f64)], law: Law) -> Option<Renderer> {
 /// If a seed has no positive squared error at some spp, that spp is left out for all seeds: leaving it out for that
 /// seed alone would bias the rest upwards.
 pub(super) fn curves_of_seeds(rows: &[&Row]) -> Vec<(Curve, f64)> {
+    curves_by(rows, |row| row.mse)
+}
+
+/// The same for another squared error.
+pub(super) fn curves_by(rows: &[&Row], error: fn(&Row) -> Option<f64>) -> Vec<(Curve, f64)> {
     let mut seeds: BTreeMap<u64, BTreeMap<u32, &Row>> = BTreeMap::new();
     for row in rows {
         seeds.entry(row.seed).or_default().entry(row.spp).or_insert(row);
     }
-    let errors =
-        group(rows.iter().copied(), |row| row.spp).into_iter().map(|(spp, rows)| (spp, by_seed(&rows, |row| row.mse)));
+    let errors = group(rows.iter().copied(), |row| row.spp).into_iter().map(|(spp, rows)| (spp, by_seed(&rows, error)));
     let has_all = |errors: &BTreeMap<u64, f64>| errors.len() == seeds.len() && errors.values().all(|mse| *mse > 0.0);
     let whole: Vec<(u32, BTreeMap<u64, f64>)> = errors.filter(|(_, errors)| has_all(errors)).collect();
     let of_seed = |(seed, rows): (&u64, &BTreeMap<u32, &Row>)| {

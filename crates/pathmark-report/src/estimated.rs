@@ -1,14 +1,14 @@
 //! Values with their intervals.
 
 use crate::analysis::confidence_sequence::Stopping;
-use crate::analysis::mean::{Moments, t_interval};
+use crate::analysis::mean::{Moments, geometric_interval, t_interval};
 use crate::analysis::quantile::median;
 use crate::analysis::{Estimate, Interval};
 use crate::plot::{Dot, Point};
 use serde::Serialize;
 
 /// Confidence of every interval in the report.
-pub(super) const LEVEL: f64 = 0.95;
+pub const LEVEL: f64 = 0.95;
 
 /// A value and its interval, if there were enough values for one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -32,10 +32,21 @@ impl Estimated {
         Self { value, interval, count: None, is_partial: false }
     }
 
-    /// The median of some values with its distribution-free interval.
-    pub(super) fn median(values: &[f64], stopping: Stopping) -> Option<Self> {
-        let interval = stopping.median_interval(values, LEVEL);
-        Some(Self { count: Some(values.len()), ..Self::of(median(values)?, interval) })
+    /// The typical value of some values, by one rule: the median if its distribution-free interval reaches the confidence
+    /// of the report, which takes six values. Fewer have their geometric mean with Student's interval of the logarithms,
+    /// or their mean if one of them is not positive. A single value has no interval.
+    pub(super) fn typical(values: &[f64], stopping: Stopping) -> Option<Self> {
+        let ordered = stopping.median_interval(values, LEVEL);
+        let of_few = || {
+            let is_positive = values.iter().all(|value| *value > 0.0);
+            if is_positive { geometric_interval(values, LEVEL) } else { t_interval(values, LEVEL) }
+        };
+        let own = match ordered {
+            Some(interval) if interval.level >= LEVEL => Self::of(median(values)?, ordered),
+            // Equal values have no spread, so Student's interval does not exist.
+            _ => of_few().map_or(Self::of(median(values)?, ordered), Self::from),
+        };
+        Some(Self { count: Some(values.len()), ..own })
     }
 
     /// The mean of values of equal variance, with Student's interval.
@@ -61,5 +72,29 @@ impl Estimated {
 
     pub(super) fn above(&self, x: f64) -> Point {
         Point { count: self.count, hollow: self.is_partial, ..Point::new(x, self.value).with_y(self.bar()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn typical(values: &[f64]) -> Estimated {
+        Estimated::typical(values, Stopping::Fixed).unwrap()
+    }
+
+    /// Logarithms 0, 1 and 2 in units of ln 2 have the mean 1 and the standard error 1 / sqrt(3); Student's t with two
+    /// degrees of freedom is 4.30265.
+    #[test]
+    fn few_values_have_their_geometric_mean_at_the_full_confidence() {
+        let three = typical(&[1.0, 2.0, 4.0]);
+        let ends = three.interval.unwrap();
+        assert!((three.value - 2.0).abs() < 1e-12 && ends.level >= LEVEL);
+        assert!((libm::log2(ends.high / 2.0) - 4.302_65 / 3.0_f64.sqrt()).abs() < 1e-4, "{ends:?}");
+        let six = typical(&[1.0, 2.0, 3.0, 4.0, 5.0, 60.0]);
+        assert_eq!((six.value, six.bar(), six.count), (3.5, Some((1.0, 60.0)), Some(6)));
+        let negative = typical(&[-1.0, 0.0, 1.0]);
+        assert!(negative.value.abs() < 1e-12 && negative.interval.unwrap().level >= LEVEL);
+        assert_eq!((typical(&[3.0]).interval, typical(&[2.0; 3]).bar()), (None, Some((2.0, 2.0))));
     }
 }

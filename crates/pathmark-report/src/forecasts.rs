@@ -1,29 +1,56 @@
 //! Simulated and predicted schedules as tables and charts: for the figure of an experiment and for the verb `simulate`.
 
+use crate::analysis::crossed::Crossed;
 use crate::analysis::speedup::serial_fraction;
+use crate::plot::number::{between, short};
 use crate::prelude::*;
-use crate::simulate::{Contender, DISTURBED, Forecast, Observed, Prediction, agreement, predict};
+use crate::simulate::{
+    Agreement, BusyRatio, Contender, DISTURBED, Forecast, Observed, Prediction, WorkInflation, agreement, busy_ratios,
+    predict,
+};
 use std::collections::HashMap;
+
+/// Predictions of this machine's runs, and the ratios of their busy times to the serial runs' beside them.
+pub struct Predicted {
+    pub predictions: Vec<Prediction>,
+    pub ratios: Vec<BusyRatio>,
+}
+
+impl Predicted {
+    /// Predicts runs from the costs of the jobs of the serial runs beside them.
+    pub fn of(runs: &[(Observed, Vec<f64>)], contenders: &[Contender], processors: usize) -> Self {
+        let ratios = busy_ratios(runs.iter().map(|(run, _)| run));
+        let runs = runs.iter().map(|(run, costs)| (run.clone(), costs.as_slice()));
+        Self { predictions: predict(runs, contenders, processors), ratios }
+    }
+}
 
 /// Predicts makespans from the serial run of the same pieces in the same repetition. Leaves out rows with more threads
 /// than processors, unless they have a thread for each job.
-pub fn predictions(results: &Results, contenders: &[Contender]) -> Result<Vec<Prediction>> {
+pub fn predictions(results: &Results, contenders: &[Contender]) -> Result<Predicted> {
     let serial = results.serial()?;
     let processors = results.run.machine.processors;
     let costs = serial_costs(results)?;
     let modelled = |row: &Row| row.threads <= processors || row.threads == row.jobs;
     let pairs = serial.in_order(results);
     let runs = pairs.iter().filter(|(row, _)| modelled(row)).filter_map(|(row, serial)| {
+        let has_own_processors = row.threads <= processors;
         let observed = Observed {
             inflation: inflation(row.cpu_s(), serial.cpu_s()),
             decomposition: row.decomposition.clone(),
             strategy: row.strategy.clone(),
             workers: row.threads,
+            repetition: row.repetition,
             makespan_s: row.makespan_s?,
+            busy: row
+                .busy_sum_s
+                .zip(serial.busy_sum_s)
+                .filter(|_| has_own_processors)
+                .map(|(own, serial)| own / serial),
         };
-        Some((observed, costs.get(&(serial.cell.as_str(), serial.repetition))?.as_slice()))
+        Some((observed, costs.get(&(serial.cell.as_str(), serial.repetition))?.clone()))
     });
-    Ok(predict(runs, contenders, processors))
+    Ok(Predicted::of(&runs.collect::<Vec<_>>(), contenders, processors))
 }
 
 /// The cost of each job of the serial runs, by cell and repetition.
@@ -42,34 +69,31 @@ pub fn inflation(own_s: Option<f64>, serial_s: Option<f64>) -> f64 {
     own_s.zip(serial_s).filter(|(own, serial)| *own > 0.0 && *serial > 0.0).map_or(1.0, |(own, serial)| own / serial)
 }
 
-/// A finding about the errors, and a table of predicted and measured makespans.
-pub fn prediction_blocks(predictions: &[Prediction]) -> Vec<Block> {
+/// Findings about the errors and about work inflation, and a table of predicted and measured makespans.
+pub fn prediction_blocks(Predicted { predictions, ratios }: &Predicted) -> Vec<Block> {
     let errors = |ratio: fn(&Prediction) -> Option<f64>| {
         let ratios = predictions.iter().filter_map(ratio);
-        agreement(&ratios.map(|ratio| (ratio, 1.0)).collect::<Vec<_>>())
+        agreement(&ratios.map(|ratio| (ratio, 1.0)).collect::<Vec<_>>()).map(|found| in_words(&found))
     };
-    let all = errors(|p| Some(p.plain_ratio)).zip(errors(|p| Some(p.ratio)));
-    let Some((plain, told)) = all else { return Vec::new() };
-    let (runs, quiet) = predictions.iter().fold((0, 0), |sum, p| (sum.0 + p.runs, sum.1 + p.undisturbed));
-    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
-    let block = match errors(|p| p.undisturbed_ratio) {
-        None => Block::notice(
-            "No run was undisturbed, so there is no telling how well the simulator predicts this machine.",
-        ),
-        Some(found) => Block::finding(format!(
-            "{} of this machine predicted from serial runs: median absolute error {}, worst {}, bias {:+.1} %. That is over the {quiet} of {runs} runs whose CPU time was within {:.0} % of that of the serial run \
-             beside them, so that it was the schedule that made their time; over all runs the median is {}, the worst {}. Told besides what CPU time each run took, which is no prediction: median {}, worst {}.",
-            counted(predictions.iter().filter(|prediction| prediction.undisturbed > 0).count(), "schedule"),
-            percent(found.median_absolute),
-            percent(found.worst_absolute),
-            100.0 * found.bias,
-            100.0 * DISTURBED,
-            percent(plain.median_absolute),
-            percent(plain.worst_absolute),
-            percent(told.median_absolute),
-            percent(told.worst_absolute),
-        )),
-    };
+    let Some(all) = errors(|p| Some(p.plain_ratio)) else { return Vec::new() };
+    let runs: usize = predictions.iter().map(|prediction| prediction.runs).sum();
+    let quiet: usize = predictions.iter().map(|prediction| prediction.undisturbed).sum();
+    let first = format!(
+        "{} of this machine predicted from serial runs. Over all {}: {all}.",
+        counted(predictions.len(), "schedule"),
+        counted(runs, "run"),
+    );
+    let quietly = format!(
+        "Over the {quiet} runs whose CPU time was within {:.0} % of the serial run's, so that the schedule made their time",
+        100.0 * DISTURBED
+    );
+    let others = [
+        ("With the work inflation of the other repetitions", errors(|p| p.modelled_ratio)),
+        (&quietly, errors(|p| p.undisturbed_ratio)),
+        ("Told each run's own CPU time, which is no prediction", errors(|p| Some(p.ratio))),
+    ];
+    let others = others.into_iter().filter_map(|(subject, found)| Some(format!("{subject}: {}.", found?)));
+    let told = std::iter::once(first).chain(others).collect::<Vec<String>>().join(" ");
     let off = |ratio: f64| 100.0 * (ratio - 1.0);
     let table = Block::table("predictions", "The simulator predicts this machine", predictions)
         .column("strategy", |p| p.strategy.clone())
@@ -78,12 +102,68 @@ pub fn prediction_blocks(predictions: &[Prediction]) -> Vec<Block> {
         .column("runs", |p| p.runs.to_string())
         .number("predicted ms", Decimals(2), |p| p.predicted_s * 1e3)
         .number("measured ms", Decimals(2), |p| p.measured_s * 1e3)
+        .number("error in all runs, %", Decimals(1), |p| off(p.plain_ratio))
+        .number("error with work inflation, %", Decimals(1), |p| p.modelled_ratio.map(off))
         .column("undisturbed runs", |p| p.undisturbed.to_string())
         .number("error in undisturbed runs, %", Decimals(1), |p| p.undisturbed_ratio.map(off))
-        .number("error in all runs, %", Decimals(1), |p| off(p.plain_ratio))
         .number("error if told the CPU time, %", Decimals(1), |p| off(p.ratio))
         .end();
-    vec![block, table]
+    std::iter::once(Block::finding(told)).chain(inflation_block(ratios)).chain([table]).collect()
+}
+
+/// Errors of predictions, in words.
+pub(super) fn in_words(found: &Agreement) -> String {
+    format!(
+        "median absolute error {:.1} %, largest {:.1} %, bias {:+.1} %",
+        100.0 * found.median_absolute,
+        100.0 * found.worst_absolute,
+        100.0 * found.bias
+    )
+}
+
+/// A finding about the work inflation at the most workers, if there were several.
+fn inflation_block(ratios: &[BusyRatio]) -> Option<Block> {
+    let inflation = WorkInflation::of(ratios, None);
+    let (workers, factors) = inflation.largest().filter(|(workers, _)| *workers > 1)?;
+    let told = Estimated::typical(factors, Stopping::Fixed)?;
+    Some(Block::finding(format!(
+        "Work inflation: with {} busy, the jobs took {}{} times as long as in the serial run of the same repetition \
+         ({:.0} % confidence, {}). A prediction without this factor is too fast by it. The forecasts leave it out: in \
+         them, a busy neighbour slows no core.",
+        counted(workers, "thread"),
+        short(told.value, 3),
+        between(told.bar(), 3),
+        100.0 * LEVEL,
+        counted(factors.len(), "repetition"),
+    )))
+}
+
+impl From<Crossed> for Estimated {
+    fn from(Crossed { value, interval }: Crossed) -> Self {
+        Self::of(value, interval)
+    }
+}
+
+/// The sentence about the band of a forecast, from its numbers of serial runs and calibrations.
+pub(super) fn band(traces: usize, calibrations: usize) -> String {
+    let sources = match (traces > 1, calibrations > 1) {
+        (true, true) => "",
+        (true, false) => " The band leaves out how well the costs of handing out are known: there is one calibration.",
+        (false, true) => " The band leaves out how much serial runs differ: there is one.",
+        (false, false) => {
+            return format!(
+                "From {} and {}: no interval.",
+                counted(traces, "serial run"),
+                counted(calibrations, "calibration")
+            );
+        }
+    };
+    format!(
+        "Band: {:.0} % confidence, from {} and {}.{sources}",
+        100.0 * LEVEL,
+        counted(traces, "serial run"),
+        counted(calibrations, "calibration")
+    )
 }
 
 /// The files that the blocks of [`forecast_blocks`] are saved in.
@@ -110,43 +190,49 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str, equal_cores: bool, nam
         " Of strategies that are within a quarter of each other everywhere only one is drawn; the table has all."
     };
     let bound = rows.iter().map(|row| row.share_s * row.workers as f64 / row.longest_s).reduce(f64::max);
-    let series = |value: Value| -> Vec<Series> {
+    let series = |value: fn(&Forecast) -> Option<Crossed>| -> Vec<Series> {
         let points = |name: &str| {
             let own = rows.iter().filter(|row| row.strategy == name);
-            own.map(|row| Point::new(row.workers as f64, value(row))).collect::<Vec<Point>>()
+            let point = |row: &Forecast| Some(Estimated::from(value(row)?).above(row.workers as f64));
+            own.filter_map(point).collect::<Vec<Point>>()
         };
-        Series::by_name(shown.iter().map(|name| (name, points(name))))
+        Series::by_name(shown.iter().map(|name| (name, points(name)))).into_iter().map(Series::banded).collect()
     };
     let most = rows.iter().map(|row| row.workers).max().unwrap_or(1);
     // A tick at every number of cores would leave no room for the labels of some powers of two.
     let doubled = std::iter::successors(Some(1), |cores| Some(2 * cores)).take_while(|cores| *cores <= most);
     let ticks: Vec<f64> = doubled.chain([most]).map(|cores| cores as f64).collect();
     let axis = || Axis::log("cores").ticks_at(ticks.clone());
-    let mut speedup = LineChart::new("Forecast: speedup", axis(), Axis::log("speedup"), series(|row| row.speedup));
+    let mut speedup =
+        LineChart::new("Forecast: speedup", axis(), Axis::log("speedup"), series(|row| Some(row.speedup)));
     speedup.overlays = vec![Overlay::guide("one per core", Curve::Line { intercept: 0.0, slope: 1.0 })];
     if let Some(bound) = bound {
         speedup.overlays.push(Overlay::guide("work / longest job", Curve::Line { intercept: bound, slope: 0.0 }));
     }
     let efficiency_axis = Axis::linear("speedup per core").including([0.0, 1.0]);
-    let mut efficiency = LineChart::new("Forecast: efficiency", axis(), efficiency_axis, series(|row| row.efficiency));
+    let mut efficiency = LineChart::new("Forecast: efficiency", axis(), efficiency_axis, series(Forecast::efficiency));
     efficiency.overlays = vec![Overlay::guide("ideal: 1", Curve::Line { intercept: 1.0, slope: 0.0 })];
-    let mut makespans = series(|row| row.makespan_s);
+    let mut makespans = series(|row| Some(row.makespan_s));
     makespans.extend(bounds(rows, makespans.len(), equal_cores));
     let makespan = LineChart::new("Forecast: makespan and its bounds", axis(), Axis::log("seconds"), makespans);
+    let band =
+        rows.iter().map(|row| (row.traces, row.calibrations)).max().map_or_else(String::new, |(t, c)| band(t, c));
     let charts = [("forecast-speedup", speedup), ("forecast-efficiency", efficiency), ("forecast-makespan", makespan)];
     for (stem, mut chart) in charts {
         chart.subtitle = workload.to_string();
-        chart.caption = format!("Simulated from the jobs of one serial run.{left_out}");
+        chart.caption = format!("Simulated from the jobs of serial runs. {band}{left_out}");
         blocks.push(Block::figure(stem, chart));
     }
     blocks.push(
         Block::table("forecast", "Forecast", rows)
             .column("strategy", |row| row.strategy.clone())
             .column("cores", |row| row.workers.to_string())
-            .number("makespan, s", Decimals(5), |row| row.makespan_s)
-            .number("speedup", Decimals(2), |row| row.speedup)
-            .number("efficiency", Decimals(3), |row| row.efficiency)
-            .number("serial fraction (Karp and Flatt)", Decimals(4), |row| serial_fraction(row.speedup, row.workers))
+            .number("makespan, s", Decimals(5), |row| row.makespan_s.value)
+            .estimated("speedup", Decimals(2), |row| Estimated::from(row.speedup))
+            .number("efficiency", Decimals(3), |row| row.efficiency().map(|told| told.value))
+            .number("serial fraction (Karp and Flatt)", Decimals(4), |row| {
+                serial_fraction(row.speedup.value, row.workers)
+            })
             .number("work / cores, s", Decimals(5), |row| row.share_s)
             .number("longest job, s", Decimals(5), |row| row.longest_s)
             .number("Graham's bound, s", Decimals(5), |row| row.greedy_s)
@@ -182,7 +268,7 @@ fn representatives(rows: &[Forecast], named: &[String]) -> Vec<String> {
     let mut names: Vec<&str> = rows.iter().map(|row| row.strategy.as_str()).collect();
     names.dedup();
     let speedups =
-        |name: &str| rows.iter().filter(|row| row.strategy == name).map(|row| row.speedup).collect::<Vec<f64>>();
+        |name: &str| rows.iter().filter(|row| row.strategy == name).map(|row| row.speedup.value).collect::<Vec<f64>>();
     let most = names.iter().map(|name| speedups(name).len()).max().unwrap_or(0);
     let mut shown: Vec<(String, Vec<f64>)> = Vec::new();
     for name in names {

@@ -3,6 +3,8 @@
 pub mod claims;
 mod contenders;
 mod estimated;
+#[cfg(test)]
+mod figure_tests;
 mod figures;
 pub mod forecasts;
 mod page;
@@ -18,9 +20,12 @@ mod serial;
 #[cfg(test)]
 mod tests;
 pub mod timeline;
+#[cfg(test)]
+mod trace_tests;
 pub mod why;
 mod words;
 
+pub use estimated::LEVEL;
 pub use figures::{FIGURES, FigureEntry, check_figures, figure_of_serial};
 pub use page::benches::{BenchRow, write_benches};
 pub use page::block::Block;

@@ -1,9 +1,11 @@
 //! Simulated and predicted runs of several processes as tables and a chart: for an experiment's figure and for
 //! `simulate --ranks`.
 
-use super::forecasts::serial_costs;
+use super::forecasts::{band, in_words, serial_costs};
+use crate::analysis::crossed::{Crossed, geometric_mean};
 use crate::cluster::MessageCosts;
 use crate::lab::{LOOK, Lab, RankRule};
+use crate::plot::number::{between, short};
 use crate::prelude::*;
 use crate::simulate::{Cluster, Contender, Crew, Hardware, Messages, agreement};
 
@@ -36,8 +38,10 @@ pub struct RankForecast {
     rule: String,
     strategy: String,
     crew: Crew,
-    makespan_s: f64,
-    speedup: f64,
+    /// Numbers of serial runs and calibrations behind the values.
+    sources: (usize, usize),
+    makespan_s: Crossed,
+    speedup: Crossed,
     gather_s: f64,
 }
 
@@ -90,12 +94,12 @@ pub fn rank_predictions(
 pub fn rank_prediction_blocks(predictions: &[RankPrediction]) -> Vec<Block> {
     let pairs: Vec<(f64, f64)> = predictions.iter().map(|prediction| (prediction.ratio, 1.0)).collect();
     let Some(found) = agreement(&pairs) else { return Vec::new() };
+    let runs = predictions.iter().map(|prediction| prediction.runs).sum();
     let finding = format!(
-        "{} of this machine predicted from serial runs: median absolute error {:.1} %, worst {:.1} %, bias {:+.1} %.",
+        "{} of this machine predicted from serial runs. Over all {}: {}.",
         counted(predictions.len(), "schedule of processes"),
-        100.0 * found.median_absolute,
-        100.0 * found.worst_absolute,
-        100.0 * found.bias,
+        counted(runs, "run"),
+        in_words(&found),
     );
     let table = Block::table("rank-predictions", "The simulator predicts processes on this machine", predictions)
         .column("rule", |p| p.rule.clone())
@@ -122,9 +126,14 @@ pub struct RankPlan<'a> {
     pub hardware: Hardware,
 }
 
-/// Replays jobs of these costs by every rule on all numbers of ranks and threads. `pixels` is the size of their image.
-pub fn rank_forecast(plan: &RankPlan<'_>, contenders: &[Contender], costs: &[f64], pixels: f64) -> Vec<RankForecast> {
-    let serial_s: f64 = costs.iter().sum();
+/// Replays the jobs of each trace (costs in seconds) with the costs of each calibration, by every rule on all numbers
+/// of ranks and threads. `pixels` is the size of their image.
+pub fn rank_forecast(
+    plan: &RankPlan<'_>,
+    contenders: &[Contender],
+    traces: &[Vec<f64>],
+    pixels: f64,
+) -> Vec<RankForecast> {
     let mut rows = Vec::new();
     for rule in plan.rules {
         // A rank with one thread runs its jobs in order, whatever the strategy.
@@ -134,14 +143,23 @@ pub fn rank_forecast(plan: &RankPlan<'_>, contenders: &[Contender], costs: &[f64
         });
         for (threads, strategy) in crews {
             let Some(within) = within(contenders, strategy, threads) else { continue };
+            let by_calibration = within.by_calibration();
             for &ranks in plan.ranks.iter().filter(|ranks| rule.check(**ranks).is_ok()) {
                 let crew = Crew { ranks, threads };
-                let cluster = Cluster { crew, within, messages: plan.messages, hardware: plan.hardware };
-                let makespan_s = cluster.makespan_s(costs, rule.distribution());
-                let speedup = if makespan_s > 0.0 { serial_s / makespan_s } else { 1.0 };
-                let gather_s = cluster.gather_s(PIXEL_BYTES * pixels);
+                let cluster = |within| Cluster { crew, within, messages: plan.messages, hardware: plan.hardware };
+                let replays = |costs: &Vec<f64>| -> Vec<f64> {
+                    by_calibration.iter().map(|one| cluster(one).makespan_s(costs, rule.distribution())).collect()
+                };
+                let makespans: Vec<Vec<f64>> = traces.iter().map(replays).collect();
+                let works = traces.iter().map(|costs| costs.iter().sum::<f64>());
+                let over = |(work_s, row): (f64, &Vec<f64>)| row.iter().map(|makespan_s| work_s / makespan_s).collect();
+                let speedups: Vec<Vec<f64>> = works.zip(&makespans).map(over).collect();
+                let told = geometric_mean(&makespans, LEVEL).zip(geometric_mean(&speedups, LEVEL));
+                let Some((makespan_s, speedup)) = told else { continue };
+                let gather_s = cluster(within).gather_s(PIXEL_BYTES * pixels);
                 let (rule, strategy) = (rule.to_string(), within.name.clone());
-                rows.push(RankForecast { rule, strategy, crew, makespan_s, speedup, gather_s });
+                let sources = (traces.len(), by_calibration.len());
+                rows.push(RankForecast { rule, strategy, crew, sources, makespan_s, speedup, gather_s });
             }
         }
     }
@@ -158,41 +176,43 @@ pub fn rank_forecast_blocks(rows: &[RankForecast], workload: &str, strategies: &
         (_, threads) => format!("{}, {}", row.rule, counted(threads, "thread")),
     };
     let cores = |row: &RankForecast| (row.crew.ranks * row.crew.threads) as f64;
-    let fewest = rows.iter().map(|row| row.crew.threads).min().unwrap_or(1);
-    let most = rows.iter().map(|row| row.crew.threads).max().unwrap_or(1);
-    let mut names: Vec<String> = Vec::new();
-    for row in rows.iter().filter(|row| [fewest, most].contains(&row.crew.threads)) {
-        if !names.contains(&name(row)) {
-            names.push(name(row));
+    let rules: BTreeSet<&str> = rows.iter().map(|row| row.rule.as_str()).collect();
+    let threads: BTreeSet<usize> = rows.iter().map(|row| row.crew.threads).collect();
+    let look = |row: &RankForecast| {
+        let colour = rules.iter().position(|rule| *rule == row.rule).unwrap_or(0);
+        let within = strategies.iter().position(|strategy| *strategy == row.strategy).unwrap_or(0);
+        let dash = threads.iter().position(|threads| *threads == row.crew.threads).unwrap_or(0);
+        Look::of(colour + rules.len() * within, dash)
+    };
+    let mut series: Vec<Series> = Vec::new();
+    for row in rows {
+        let point = Estimated::from(row.speedup).above(cores(row));
+        match series.iter_mut().find(|series| series.name == name(row)) {
+            Some(series) => series.points.push(point),
+            None => series.push(Series::new(name(row), look(row), vec![point]).banded()),
         }
     }
-    let points = |wanted: &String| {
-        let own = rows.iter().filter(|row| name(row) == *wanted);
-        own.map(|row| Point::new(cores(row), row.speedup)).collect::<Vec<Point>>()
-    };
-    let series = Series::by_name(names.iter().map(|name| (name, points(name))));
     let mut chart = LineChart::new(
-        "Forecast: processes",
+        "Simulated: speedup of processes",
         Axis::log("cores: processes times threads"),
         Axis::log("speedup"),
         series,
     );
     chart.overlays = vec![Overlay::guide("one per core", Curve::Line { intercept: 0.0, slope: 1.0 })];
     chart.subtitle = format!("{workload}, {} within", strategies.join(" or "));
-    let told = if fewest == most {
-        String::new()
-    } else {
-        " Of the numbers of threads a process the fewest and the most are drawn; the table has all.".to_string()
-    };
-    chart.caption = format!("Simulated from the jobs of one serial run, gathering left out.{told}");
-    let best = rows.iter().max_by(|a, b| a.speedup.total_cmp(&b.speedup));
+    let band = rows.iter().map(|row| row.sources).max().map_or_else(String::new, |(t, c)| band(t, c));
+    let caption =
+        "Colour: rule; dashes: threads of a process. Simulated from the jobs of serial runs, without gathering.";
+    chart.caption = format!("{caption} {band}");
+    let best = rows.iter().max_by(|a, b| a.speedup.value.total_cmp(&b.speedup.value));
     let finding = best.map(|row| {
         Block::finding(format!(
-            "On {} of {} each, {} would be {:.3} times as fast as one core; gathering the film would take {:.3} ms more.",
+            "Simulated: on {} of {} each, {} would be {} times as fast as one core{}; gathering the film would take {:.3} ms more.",
             counted(row.crew.ranks, "process"),
             counted(row.crew.threads, "thread"),
             row.rule,
-            row.speedup,
+            short(row.speedup.value, 4),
+            between(Estimated::from(row.speedup).bar(), 4),
             1e3 * row.gather_s,
         ))
     });
@@ -200,9 +220,9 @@ pub fn rank_forecast_blocks(rows: &[RankForecast], workload: &str, strategies: &
         .column("rule", |row| row.rule.clone())
         .column("processes", |row| row.crew.ranks.to_string())
         .column("threads of each", |row| row.crew.threads.to_string())
-        .number("makespan, s", Decimals(5), |row| row.makespan_s)
-        .number("speedup", Decimals(2), |row| row.speedup)
-        .number("efficiency", Decimals(3), |row| row.speedup / (row.crew.ranks * row.crew.threads) as f64)
+        .number("makespan, s", Decimals(5), |row| row.makespan_s.value)
+        .estimated("speedup", Decimals(2), |row| Estimated::from(row.speedup))
+        .number("efficiency", Decimals(3), |row| row.speedup.value / (row.crew.ranks * row.crew.threads) as f64)
         .number("gathering, ms", Significant(3), |row| 1e3 * row.gather_s)
         .column("strategy within", |row| row.strategy.clone())
         .end();

@@ -161,7 +161,8 @@ impl<'a> Remedies<'a> {
         }
         let (entry, parameter) = self.results.definition.lab.strategy_named(name).ok()?;
         let discipline = entry.discipline(parameter.as_deref()).ok()?;
-        Some(Contender { name: name.to_string(), discipline, order: Order::ByIndex, overheads: Overheads::default() })
+        let (name, overheads) = (name.to_string(), Overheads::default());
+        Some(Contender { name, discipline, order: Order::ByIndex, overheads, calibrations: Vec::new() })
     }
 
     /// The command that measures the changed schedule beside its serial run.

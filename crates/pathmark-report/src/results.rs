@@ -92,24 +92,35 @@ impl Results {
         self.rows.first()
     }
 
-    /// Of the serial runs with the most jobs, the trace of the one with the median time; `None` if that trace was not
-    /// kept.
-    pub fn largest_serial_trace(&self) -> Result<Option<TraceFile>> {
+    /// The kept traces of the serial runs with the most jobs: see [`Self::traces_like_typical`].
+    pub fn largest_serial_traces(&self) -> Result<Vec<TraceFile>> {
         let serial: Vec<&Row> = self.rows().filter(|row| row.schedule.is_serial()).collect();
         let most = serial.iter().map(|row| row.jobs).max();
         let rows: Vec<&Row> = serial.into_iter().filter(|row| Some(row.jobs) == most).collect();
-        Self::typical(&rows).map_or(Ok(None), |row| self.trace(row))
+        self.traces_like_typical(&rows)
+    }
+
+    /// The kept traces of the rows that have the image and the pieces of the typical row; its own trace comes first.
+    pub(super) fn traces_like_typical(&self, rows: &[&Row]) -> Result<Vec<TraceFile>> {
+        let Some(typical) = Self::typical(rows) else { return Ok(Vec::new()) };
+        let is_like = |row: &Row| row.image == typical.image && row.decomposition == typical.decomposition;
+        let others = rows.iter().copied().filter(|row| is_like(row) && !std::ptr::eq(*row, typical));
+        std::iter::once(typical).chain(others).filter_map(|row| self.trace(row).transpose()).collect()
     }
 
     pub fn profile(&self) -> Profile {
         Profile::from_name(&self.run.profile).unwrap_or(Profile::Quick)
     }
 
-    /// Scene, size and machine in a line, as the subtitle of a figure. Leaves out the scene if there are several, and
-    /// the sizes if there are more than three.
+    /// Scene, size and machine in a line, as the subtitle of a figure.
     pub(super) fn workload(&self) -> String {
-        let scenes: BTreeSet<&str> = self.rows().map(|row| row.scene.as_str()).collect();
-        let sizes: BTreeSet<(u32, u32)> = self.rows().map(|row| (row.width, row.height)).collect();
+        self.workload_of(&self.rows().collect::<Vec<&Row>>())
+    }
+
+    /// The same for some rows. Leaves out the scene if there are several, and the sizes if there are more than three.
+    pub(super) fn workload_of(&self, rows: &[&Row]) -> String {
+        let scenes: BTreeSet<&str> = rows.iter().map(|row| row.scene.as_str()).collect();
+        let sizes: BTreeSet<(u32, u32)> = rows.iter().map(|row| (row.width, row.height)).collect();
         let scene = scenes.first().filter(|_| scenes.len() == 1).map(|scene| format!("{scene}, "));
         let sizes: Vec<String> = sizes.into_iter().map(|(width, height)| format!("{width}x{height}")).collect();
         let size = (1..=3).contains(&sizes.len()).then(|| format!("{}, ", sizes.join(" and ")));
@@ -125,6 +136,11 @@ impl Results {
     /// differ.
     pub(super) fn series_name(&self, row: &Row) -> String {
         joined(self.image_parts.iter().map(|setting| label(setting, row)))
+    }
+
+    /// [`Results::series_name`] among images of one scene.
+    pub(super) fn series_name_in_scene(&self, row: &Row) -> String {
+        joined(self.image_parts.iter().filter(|setting| setting.name != "scene").map(|setting| label(setting, row)))
     }
 
     /// The properties in which the images differ, or the estimator if they do not.

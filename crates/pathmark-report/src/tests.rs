@@ -305,6 +305,26 @@ fn no_figure_goes_through_the_rows_once_for_each_of_many_groups() {
     }
 }
 
+/// A lamp that fills the display keeps its error in linear radiance, whatever the samples; its display value has none.
+#[test]
+fn errors_of_display_values_are_drawn_where_an_experiment_asks_for_them() {
+    let at = |spp: u32, seed: u64| {
+        let noise = 1.0 + 1e-3 * f64::from(spp % 7) * seed as f64;
+        let (mse, mse_display) = (Some(4.0 * noise), Some(noise / f64::from(spp)));
+        Record { spp, seed, mse, mse_display, cell: format!("{spp}/{seed}"), ..row() }
+    };
+    let rows: Vec<Record> = [4, 16, 64, 256].into_iter().flat_map(|spp| [at(spp, 1), at(spp, 2)]).collect();
+    let told = |options: &str| {
+        let results = results(&["rmse-against-spp"], options, rows.clone()).unwrap();
+        words(&blocks(&results).unwrap())
+    };
+    let (linear, display) = (told(""), told("[figure.rmse-against-spp]\nvalues = \"display\""));
+    assert!(linear.contains("power 0.00") || linear.contains("power -0.00"), "{linear}");
+    assert!(display.contains("power -0.50") || display.contains("power -0.49"), "{display}");
+    assert!(display.contains("RMSE, display values") && !linear.contains("RMSE, display values"));
+    assert!(refusal(&["rmse-against-spp"], "[figure.rmse-against-spp]\nvalues = \"gamma\"").contains("display"));
+}
+
 fn refusal(figures: &[&str], more: &str) -> String {
     let text = definition(figures, more);
     let definition = Definition::from_text(&Lab::built_in(), "mine", "mine.toml", &text).unwrap();

@@ -2,6 +2,7 @@
 
 use crate::analysis::balance::{Balance, processors_in_use};
 use crate::measure::{TraceFile, TraceRow, available_threads, schedule_name};
+use crate::plot::number::short;
 use crate::plot::{GanttChart, JobBar, Schedule};
 use crate::words::counted;
 
@@ -15,6 +16,11 @@ pub fn name(trace: &TraceFile) -> String {
     let settings = &trace.header.settings;
     let strategy = schedule_name(&settings.strategy, &settings.decomposition);
     format!("{strategy}, {}, {}", counted(settings.threads, "thread"), settings.decomposition)
+}
+
+/// Seconds or milliseconds with three digits.
+fn duration(seconds: f64) -> String {
+    if seconds >= 1.0 { format!("{} s", short(seconds, 3)) } else { format!("{} ms", short(seconds * 1e3, 3)) }
 }
 
 pub(super) fn lanes(trace: &TraceFile, balance: &Balance, processors: usize) -> Schedule {
@@ -35,7 +41,7 @@ pub(super) fn lanes(trace: &TraceFile, balance: &Balance, processors: usize) -> 
         format!("utilisation {:.0} %", 100.0 * balance.utilisation())
     };
     Schedule {
-        title: format!("{}: {:.1} ms, {utilisation}", name(trace), makespan_s * 1e3),
+        title: format!("{}: {}, {utilisation}", name(trace), duration(makespan_s)),
         workers: trace.header.workers as usize,
         makespan_s,
         jobs: trace.rows.iter().map(bar).collect(),

@@ -205,7 +205,7 @@ fn percent(told: &Estimated) -> String {
     let Estimated { value, interval, .. } = told.times(100.0);
     let interval = interval.map_or_else(
         || "no interval".to_string(),
-        |own| format!("{} to {}, {:.1} % confidence", fixed(own.low, 1), fixed(own.high, 1), 100.0 * own.level),
+        |own| format!("{} to {}, {:.1} % confidence", fixed(own.low, 1), fixed(own.high, 1), own.percent()),
     );
     format!("{} % ({interval})", fixed(value, 1))
 }
@@ -300,7 +300,7 @@ mod tests {
             let [found] = &found[..] else { panic!("one schedule") };
             assert_eq!((value(found, Part::Work), value(found, part)), (0.8, 0.2), "{strategy} {name}");
             assert_eq!(found.largest_loss().unwrap().0, part, "{strategy} {name}");
-            let said = format!("The largest loss is {name} 20.0 % (20.0 to 20.0, 96.9 % confidence)");
+            let said = format!("The largest loss is {name} 20.0 % (20.0 to 20.0, 96.8 % confidence)");
             assert!(found.sentence.contains(&said), "{}", found.sentence);
             let own = found.remedy.as_ref().unwrap();
             assert_eq!((&own.settings[..], own.outlook), (&[remedy.to_string()][..], None));
@@ -360,7 +360,7 @@ mod tests {
         for row in rows.iter_mut().filter(|row| row.threads == 2 && row.repetition < 2) {
             row.busy_sum_s = Some(3.0);
         }
-        let said = "work inflation 20.0 % (−20.0 to 20.0, 96.9 % confidence): the same jobs took longer than in the \
+        let said = "work inflation 20.0 % (−20.0 to 20.0, 96.8 % confidence): the same jobs took longer than in the \
                     serial run. More repetitions must show whether it is a loss.";
         let found = explained(rows);
         assert!(found[0].sentence.contains(said), "{}", found[0].sentence);
@@ -391,7 +391,7 @@ mod tests {
         let found = explained(rows);
         let shares = [Part::Work, Part::Inflation, Part::Idle].map(|part| value(&found[0], part));
         assert_eq!((found[0].slots, shares), (2, [0.8, 0.1, 0.1]));
-        assert!(found[0].sentence.contains("80.0 % (80.0 to 80.0, 96.9 % confidence) of processors × time"));
+        assert!(found[0].sentence.contains("80.0 % (80.0 to 80.0, 96.8 % confidence) of processors × time"));
         assert_eq!(found[0].remedy.as_ref().unwrap().settings, ["threads=2"]);
     }
 

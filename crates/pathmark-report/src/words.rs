@@ -18,35 +18,43 @@ pub(super) fn hollow(told: impl IntoIterator<Item = Estimated>) -> &'static str 
 /// The sentence of a caption about bars, and that about hollow marks.
 pub(super) fn bars<T: Into<Estimated>>(told: impl IntoIterator<Item = T>) -> String {
     let told: Vec<Estimated> = told.into_iter().map(Into::into).collect();
-    format!("Bars: {}.{}", confidence(told.iter().filter_map(|told| told.interval)), hollow(told))
+    let level = confidence(told.iter().filter_map(|told| told.interval));
+    format!("Bars: {level}{}.{}", means_of_few(&told), hollow(told))
+}
+
+/// Fewest values whose extremes enclose the median with 95 % confidence.
+const ENOUGH: usize = 6;
+
+/// The part of a caption about few values, whose typical value is no median; empty if there are none.
+fn means_of_few(told: &[Estimated]) -> &'static str {
+    let is_few = |told: &Estimated| told.count.is_some_and(|count| (2..ENOUGH).contains(&count));
+    match told.iter().filter(|told| is_few(told)).count() {
+        0 => "",
+        few if few == told.len() => " (the geometric mean, because there are fewer than six values)",
+        _ => " (the median, or the geometric mean of fewer than six values)",
+    }
 }
 
 /// The caption of ratios in pairs.
 pub(super) fn ratio_bars<T: Into<Estimated>>(told: impl IntoIterator<Item = T>) -> String {
-    format!("Median of ratios within a repetition. {}", bars(told))
+    format!("Ratios within a repetition. {}", bars(told))
 }
 
 /// An interval with the confidence that it reaches: few values cannot reach 95 %.
 pub(super) fn with_level(interval: &Interval, digits: usize) -> String {
-    format!("{:.digits$} to {:.digits$} ({:.1} %)", interval.low, interval.high, interval.level * 100.0)
+    format!("{:.digits$} to {:.digits$} ({:.1} %)", interval.low, interval.high, interval.percent())
 }
 
 /// The confidence of some intervals, in words for a caption: of medians, or of means over processes of pairs.
 fn confidence(intervals: impl IntoIterator<Item = Interval>) -> String {
-    let mut levels: Vec<f64> = intervals.into_iter().map(|interval| at_least_percent(interval.level)).collect();
+    let mut levels: Vec<f64> = intervals.into_iter().map(|interval| interval.percent()).collect();
     levels.sort_by(f64::total_cmp);
     let levels = match levels.as_slice() {
         [] => return "no interval, for want of repetitions".to_string(),
-        [least, .., most] if least < most => format!("{least:.1} to {most:.1}"),
-        [level, ..] => format!("{level:.1}"),
+        [least, .., most] if least < most => format!("{least:.1} to {most:.1} %"),
+        [level, ..] => format!("{level:.1} %"),
     };
-    format!("interval of the typical value, {levels} % confidence")
-}
-
-/// A confidence in percent, rounded down to one decimal. Binomial sums may give a half as .4999999, which still counts
-/// as a half.
-fn at_least_percent(level: f64) -> f64 {
-    (level * 1000.0 + 1e-6).floor() / 10.0
+    format!("interval of the typical value, {levels} confidence")
 }
 
 /// Names with their places: names of the table in its order and at their places in it, then unknown names in
@@ -66,11 +74,6 @@ pub(super) fn in_table_order<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_confidence_is_not_told_larger_than_it_is() {
-        assert_eq!([0.5 - 1e-12, 0.5, 0.9299, 0.96].map(at_least_percent), [50.0, 50.0, 92.9, 96.0]);
-    }
 
     #[test]
     fn a_caption_tells_the_least_and_the_most_confidence() {

@@ -231,7 +231,9 @@ fn unsupported_features_of_lanes_are_reported() {
         ("cornell", Spec { estimator: "whitted".into(), ..spec() }, "estimator"),
         ("cornell", Spec { sampler: "stratified".into(), ..spec() }, "sampler"),
         ("cornell", Spec { sampler: "locked".into(), ..spec() }, "sampler"),
+        #[cfg(not(feature = "lane-profiles"))]
         ("cornell", Spec { effects: Some("smallpt".into()), ..spec() }, "effects"),
+        ("cornell", Spec { effects: Some("surfaces".into()), ..spec() }, "effects"),
         ("cornell", Spec { clamp: Some("subpixel".into()), ..spec() }, "clamp"),
         ("cornell", Spec { epsilon: Some("1e-4".into()), ..spec() }, "epsilon"),
     ] {
@@ -240,6 +242,26 @@ fn unsupported_features_of_lanes_are_reported() {
     }
     let asked = choose(&load("cornell").unwrap(), &Spec { kernel: "scalar".into(), ..spec() }).unwrap();
     assert_eq!((asked.plan.name(), asked.fallback), ("scalar", ""));
+}
+
+/// A build with more versions has one for mirrors and glass, too. Each renders the bits of the scalar kernel.
+#[cfg(feature = "lane-profiles")]
+#[test]
+fn versions_for_fewer_materials_have_the_scalar_kernels_bits() {
+    let piece = Piece { bounds: Bounds { x0: 0, y0: 0, x1: 24, y1: 18 }, samples: 0..16 };
+    for (scene, effects, version) in [
+        ("cornell-diffuse", None, "diffuse"),
+        ("cornell-diffuse", Some("smallpt"), "smallpt"),
+        ("cornell-diffuse", Some("all"), "run-time"),
+        ("cornell", None, "run-time"),
+        ("cornell", Some("smallpt"), "smallpt"),
+    ] {
+        let scene = Arc::new(load(scene).unwrap());
+        let effects = effects.map(str::to_string);
+        let spec = Spec { width: 24, height: 18, estimator: "bsdf".into(), effects, ..Spec::default() };
+        assert_eq!(choose(&scene, &spec).unwrap().plan.effects(), Some(version), "{}", scene.name);
+        assert_same(&scene, &spec, std::slice::from_ref(&piece));
+    }
 }
 
 #[test]

@@ -219,7 +219,7 @@ impl fmt::Display for Reason {
 impl fmt::Display for Parameter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, estimate: Estimate { value, interval } } = self;
-        let percent = 100.0 * interval.level;
-        write!(f, "{name} = {value:.3} ({percent:.0} % interval {:.3} to {:.3})", interval.low, interval.high)
+        let percent = interval.percent();
+        write!(f, "{name} = {value:.3} ({percent} % interval {:.3} to {:.3})", interval.low, interval.high)
     }
 }

@@ -10,6 +10,7 @@ mod fog;
 mod form_factors;
 mod furnaces;
 mod glass;
+mod outlines;
 mod planes;
 
 use super::{Section, case};
@@ -39,5 +40,6 @@ pub(super) const SECTION: Section = Section {
         case("A19", "the mean way through a ball that absorbs", fog::ball),
         case("A20", "fog that scatters, in a furnace", fog::furnace),
         case("A21", "rough metal under an even sky", planes::metal_under_a_sky),
+        case("A23", "a ball off the axis is an ellipse", outlines::ellipses),
     ],
 };

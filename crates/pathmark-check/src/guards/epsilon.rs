@@ -1,7 +1,7 @@
 //! No epsilon: a ray remembers the surface that it leaves. So no object is too small or too near to be seen, and rays do
 //! not hit huge walls again where they start, as with a smaller epsilon.
 
-use super::{Guard, Measured, variant};
+use super::{Guard, InRender, Measured, Often, variant};
 use crate::math::{Frame, Ray, Vec3, dot};
 use crate::random::Random;
 use crate::sampling::cosine_hemisphere;
@@ -12,6 +12,7 @@ pub(super) const SMALL: Guard = Guard {
     name: "small things: no epsilon",
     error: "share of ways through a glass ball of radius 4e-5 that are not found",
     operation: "a ray that starts on a sphere",
+    in_render: InRender { scene: "cornell", often: Often::BounceAtMost },
     with: variant!("primitive and side remembered", lost, through, leave),
     without: variant!("smallpt's epsilon, 1e-4", lost, through, skip_smallpts),
 };
@@ -20,6 +21,7 @@ pub(super) const HUGE: Guard = Guard {
     name: "huge things: no epsilon",
     error: "share of bounces off a wall of radius 1e5 that meet it where they start",
     operation: "a ray that starts on a sphere",
+    in_render: InRender { scene: "cornell", often: Often::BounceAtMost },
     with: variant!("primitive and side remembered", again, off, leave),
     without: variant!("an epsilon of 1e-10", again, off, skip_tiny),
 };

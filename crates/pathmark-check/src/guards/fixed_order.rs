@@ -1,6 +1,6 @@
 //! Sums in a fixed order: samples are added along a tree, whichever block is finished first.
 
-use super::{Guard, Measured, variant};
+use super::{Guard, InRender, Measured, Often, variant};
 use crate::film::{Assembly, Bounds, PixelSum, SAMPLE_BLOCK, SampleSum, TileBuffer};
 use crate::math::Rgb;
 use crate::random::Random;
@@ -10,6 +10,7 @@ pub(super) const GUARD: Guard = Guard {
     name: "one image from all schedules",
     error: "share of 200 orders of arrival whose sum of 4096 samples differs in a bit from the first's",
     operation: "256 blocks of 16 samples of a pixel put together",
+    in_render: InRender { scene: "cornell", often: Often::Sample(1.0 / 4096.0) },
     with: variant!("along a tree, as a film", error, work, as_a_film),
     without: variant!("as they arrive", error, work, as_they_arrive),
 };

@@ -1,6 +1,6 @@
 //! Exact Fresnel equations: Schlick's polynomial is off by up to 0.036.
 
-use super::{Guard, Measured, variant};
+use super::{Guard, InRender, Measured, Often, variant};
 use crate::math::fresnel_dielectric;
 use crate::shading::fresnel::oracle;
 use crate::shading::unguarded::schlick;
@@ -9,6 +9,7 @@ pub(super) const GUARD: Guard = Guard {
     name: "exact Fresnel",
     error: "mean error of glass's reflectance over 202 angles from either side",
     operation: "a reflectance",
+    in_render: InRender { scene: "cornell-mesh-mirror", often: Often::BounceAtMost },
     with: variant!("Fresnel", error, work, fresnel_dielectric),
     without: variant!("Schlick", error, work, schlick),
 };

@@ -1,6 +1,6 @@
 //! Mixed keys: generators seeded with the pixel indices do not fill an image evenly, or fill it too evenly.
 
-use super::{Guard, Measured, variant};
+use super::{Guard, InRender, Measured, Often, variant};
 use crate::random_numbers::unguarded::{draw, sequential_state};
 use crate::sampling::{Address, Independent, Purpose, SampleKey, Sampler};
 
@@ -8,6 +8,7 @@ pub(super) const GUARD: Guard = Guard {
     name: "mixed keys",
     error: "chi-square score of a draw over 786 432 pixels in 256 cells, mean size over eight draws (0.8 by chance)",
     operation: "a generator and its first two numbers",
+    in_render: InRender { scene: "cornell", often: Often::Ray },
     with: variant!("all of the address mixed", error, work, mixed),
     without: variant!("state = pixel", error, work, sequential),
 };

@@ -9,6 +9,7 @@
 mod epsilon;
 mod fixed_order;
 mod fresnel;
+mod in_render;
 mod keys;
 mod precision;
 mod report_guards;
@@ -17,11 +18,14 @@ mod sums;
 mod visible_normals;
 mod watertight;
 
+pub use in_render::{GuardTimes, InRender, Often, RenderTime};
+
 use crate::analysis::adjacent_pairs::paired_ratio;
 use crate::analysis::mean::t_interval;
 use crate::analysis::quantile::median;
+use crate::error::{Error, Result};
 use crate::guard_prices::{LEVEL, PriceRow};
-use crate::measure::{Interleaved, interleaved};
+use crate::measure::interleaved;
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 
@@ -51,6 +55,8 @@ pub struct Guard {
     pub error: &'static str,
     /// The operation that is timed.
     pub operation: &'static str,
+    /// A render that contains the operation.
+    pub in_render: InRender,
     /// The program's method.
     pub with: Variant,
     pub without: Variant,
@@ -74,19 +80,22 @@ macro_rules! variant {
 use variant;
 
 impl Guard {
-    /// The times of both methods in this process.
-    pub fn times(&self) -> Option<Interleaved> {
+    /// The times of both methods in this process, and of a render beside them.
+    pub fn times(&self) -> Result<GuardTimes> {
         let mut with = |count: u64| _ = black_box((self.with.work)(black_box(count)));
         let mut without = |count: u64| _ = black_box((self.without.work)(black_box(count)));
-        interleaved(ROUNDS, &mut with, &mut without)
+        let operation = interleaved(ROUNDS, &mut with, &mut without)
+            .ok_or_else(|| Error::Check(format!("the guard {} was not timed", self.name)))?;
+        Ok(GuardTimes { operation, render: self.in_render.time()? })
     }
 
     /// Measures the errors, and adds the times of several processes.
-    pub fn price(&self, processes: &[Interleaved]) -> PriceRow {
+    pub fn price(&self, processes: &[GuardTimes]) -> PriceRow {
         let (with, without) = ((self.with.error)(), (self.without.error)());
-        let ns = |of: fn(&Interleaved) -> f64| median(&processes.iter().map(of).collect::<Vec<_>>());
-        let pairs: Vec<Vec<f64>> = processes.iter().map(|own| own.ratios.clone()).collect();
+        let of = |value: fn(&GuardTimes) -> f64| processes.iter().map(value).collect::<Vec<f64>>();
+        let pairs: Vec<Vec<f64>> = processes.iter().map(|own| own.operation.ratios.clone()).collect();
         let ratio = paired_ratio(&pairs, LEVEL).map(|found| found.ratio);
+        let share = t_interval(&of(GuardTimes::share), LEVEL);
         PriceRow {
             guard: self.name.to_string(),
             error: self.error.to_string(),
@@ -99,11 +108,19 @@ impl Guard {
             error_without_low: without.low,
             error_without_high: without.high,
             operation: self.operation.to_string(),
-            ns_with: ns(|own| own.first_ns),
-            ns_without: ns(|own| own.second_ns),
+            ns_with: median(&of(|own| own.operation.first_ns)),
+            ns_without: median(&of(|own| own.operation.second_ns)),
             time_ratio: ratio.map(|ratio| ratio.value),
             time_ratio_low: ratio.map(|ratio| ratio.interval.low),
             time_ratio_high: ratio.map(|ratio| ratio.interval.high),
+            scene: self.in_render.scene.to_string(),
+            often: self.in_render.often.in_words(),
+            operations: median(&of(|own| own.render.operations)),
+            render_ns: median(&of(|own| own.render.sample_ns)),
+            share: share.map(|share| share.value),
+            share_low: share.map(|share| share.interval.low),
+            share_high: share.map(|share| share.interval.high),
+            processes: Some(processes.len()),
         }
     }
 }

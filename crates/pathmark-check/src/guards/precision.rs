@@ -1,6 +1,6 @@
 //! Double precision: in single precision no formula is accurate for the walls of smallpt's box, spheres of radius 1e5.
 
-use super::{Guard, Measured, Variant};
+use super::{Guard, InRender, Measured, Often, Variant};
 use crate::math::{Real, Vec3, dot, first_root};
 use crate::random::Random;
 use crate::sphere::exact::Exact;
@@ -9,6 +9,7 @@ pub(super) const GUARD: Guard = Guard {
     name: "double precision",
     error: "mean distance of a hit from the walls of smallpt's box, scene units",
     operation: "a ray against a sphere",
+    in_render: InRender { scene: "cornell", often: Often::Test(1.0) },
     with: Variant { name: "f64", error: error::<f64>, work: work::<f64> },
     without: Variant { name: "f32", error: error::<f32>, work: work::<f32> },
 };

@@ -1,7 +1,7 @@
 //! Divisions without thresholds: the second report replaces each quotient whose divisor is below 0.001, which turns
 //! its smooth metals black.
 
-use super::{Guard, Measured, variant};
+use super::{Guard, InRender, Measured, Often, variant};
 use crate::material::Ggx;
 use crate::math::Vec3;
 use crate::shading::unguarded::reflection_of_report_b;
@@ -11,6 +11,7 @@ pub(super) const GUARD: Guard = Guard {
     name: "no thresholds in GGX",
     error: "error of the share that metal of α = 0.05 reflects of light from ahead, exactly 0.9973",
     operation: "a value of the BRDF",
+    in_render: InRender { scene: "conductor-25", often: Often::BounceAtMost },
     with: variant!("none", error, work, ours),
     without: variant!("report B's, below 0.001", error, work, theirs),
 };

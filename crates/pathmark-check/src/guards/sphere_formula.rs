@@ -1,6 +1,6 @@
 //! The sphere formula: smallpt's formula loses its accuracy for small spheres far away and for huge ones nearby.
 
-use super::{Guard, Measured, Variant};
+use super::{Guard, InRender, Measured, Often, Variant};
 use crate::math::{Vec3, first_root, roots};
 use crate::random::Random;
 use crate::sphere::bulk::aimed;
@@ -11,6 +11,7 @@ pub(super) const GUARD: Guard = Guard {
     name: "sphere formula",
     error: "share of roots outside the bound, spheres of 1e-6 to 1e8 up to 1e8 radii away",
     operation: "a ray against a sphere",
+    in_render: InRender { scene: "cornell", often: Often::Test(1.0) },
     with: Variant {
         name: "closest approach, c/q",
         error: || error(|f, d, r| roots(f, d, 1.0, r)),

@@ -1,6 +1,6 @@
 //! Sums in double precision, block by block: a running sum in single precision stops growing.
 
-use super::{Guard, Measured, Variant};
+use super::{Guard, InRender, Measured, Often, Variant};
 use crate::film::SampleSum;
 use crate::math::Rgb;
 use std::hint::black_box;
@@ -9,6 +9,7 @@ pub(super) const GUARD: Guard = Guard {
     name: "sums of samples",
     error: "relative error of the sum of ten million samples of 0.7",
     operation: "a sample of three channels added",
+    in_render: InRender { scene: "cornell", often: Often::Sample(1.0) },
     with: Variant { name: "f64, blocks of 16 and a tree", error: || error(tree(SAMPLES)), work: tree },
     without: Variant { name: "f32, one after the other", error: || error(running(SAMPLES)), work: running },
 };

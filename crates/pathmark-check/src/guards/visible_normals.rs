@@ -1,6 +1,6 @@
 //! Sampling of visible microfacet normals: cosine-distributed directions seldom find the lobe.
 
-use super::{Guard, Measured, variant};
+use super::{Guard, InRender, Measured, Often, variant};
 use crate::material::Ggx;
 use crate::shading::unguarded::{Moments, albedo_by_cosines, albedo_by_visible_normals};
 
@@ -8,6 +8,7 @@ pub(super) const GUARD: Guard = Guard {
     name: "visible normals",
     error: "standard deviation of a sample of what GGX of α = 0.1 reflects of an even light, mean over ten angles",
     operation: "a sample",
+    in_render: InRender { scene: "conductor-25", often: Often::BounceAtMost },
     with: variant!("visible normals", error, work, albedo_by_visible_normals),
     without: variant!("cosine", error, work, albedo_by_cosines),
 };

@@ -1,6 +1,6 @@
 //! The watertight triangle test: neighbours agree about a ray through their shared edge.
 
-use super::{Guard, Measured, variant};
+use super::{Guard, InRender, Measured, Often, variant};
 use crate::math::{Ray, Vec3};
 use crate::meshes::icosphere;
 use crate::random::Random;
@@ -11,6 +11,7 @@ pub(super) const GUARD: Guard = Guard {
     name: "watertight triangles",
     error: "share of rays at shared edges that pass between the triangles of a closed mesh",
     operation: "a ray against 80 triangles",
+    in_render: InRender { scene: "cornell-mesh", often: Often::Test(1.0 / 80.0) },
     with: variant!("Woop, Benthin and Wald", error, work, watertight),
     without: variant!("Möller and Trumbore", error, work, plain),
 };

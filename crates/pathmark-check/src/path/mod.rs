@@ -37,6 +37,7 @@ pub(super) const SECTION: Section = Section {
         case("P16", "report D's grids", pieces::grids),
         case("P17", "one bright pixel changes no other", display::firefly),
         case("P19", "gamma and rounding at the edges", display::rounding),
+        case("P20", "report D's grid of nine with eight threads", pieces::eight_threads),
         case("P18", "the bits of another build and another machine", order::bits),
     ],
 };

@@ -75,3 +75,11 @@ pub(super) fn grids(trials: &mut Trials) {
         }
     }
 }
+
+/// Report D starts a thread for each section of a square. With eight threads the ninth section has none, so its pixels stay black: the
+/// last of three columns, 815 - 2 * 272 wide, in the last of three rows, 611 - 204 - 204 high.
+pub(super) fn eight_threads(trials: &mut Trials) {
+    let plan = plan("grid:9", 815, 611);
+    let sections = plan.pieces().iter().take(8).map(|piece| piece.bounds.area());
+    trials.same("pixels of 815x611 in no section", 271 * 203, 815 * 611 - sections.sum::<usize>());
+}

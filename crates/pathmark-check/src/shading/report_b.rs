@@ -2,7 +2,7 @@
 
 use super::unguarded::reflection_of_report_b;
 use crate::Trials;
-use crate::material::{Bsdf, Conductor, Facets, KdKs, Sampling};
+use crate::material::{Bsdf, Conductor, Facets, GuardedKdKs, KdKs, Sampling};
 use crate::materials::towards;
 use crate::math::{Rgb, Vec3, fresnel_dielectric};
 use crate::quadrature::integral;
@@ -56,6 +56,29 @@ pub(super) fn guards(trials: &mut Trials) {
             worst = worst.max((ours.eval(wo, wi).r / report - 1.0).abs());
         }
         trials.at_most(format!("roughness {roughness}: off the report's formula where no guard acts"), 1e-9, worst);
+    }
+    // The material with the guards equals the report's formulas where they act, too: at grazing angles, and near the
+    // normal for small roughness.
+    for roughness in [0.0, 0.05, 0.25, 1.0] {
+        let material = GuardedKdKs { kd: Rgb { r: 0.3, g: 0.3, b: 0.25 }, eta: 12.85, roughness };
+        let (mut worst, mut guarded): (f64, u64) = (0.0, 0);
+        for k in 0..10_000 {
+            let towards = |of: i32| {
+                towards(f64::from(k % of + 1) / f64::from(40 * of) * f64::from(k % 41), f64::from(k % 61) / 61.0)
+            };
+            let (wo, wi) = (towards(83), towards(71));
+            if wo.z <= 0.0 || wi.z <= 0.0 {
+                continue;
+            }
+            let fresnel = fresnel_dielectric(wo.z, 12.85);
+            let is_guarded = 4.0 * wo.z * wi.z < 0.001;
+            guarded += u64::from(is_guarded);
+            let specular = if is_guarded { 1.0 } else { fresnel * reflection_of_report_b(roughness, wo, wi) };
+            let report = (1.0 - fresnel) * 0.3 * FRAC_1_PI + specular;
+            worst = worst.max((material.eval(wo, wi).r / report - 1.0).abs());
+        }
+        trials.at_most(format!("roughness {roughness}: off the report's guarded formula"), 1e-9, worst);
+        trials.same(format!("roughness {roughness}: a guard acts"), &true, &(guarded > 100));
     }
 }
 

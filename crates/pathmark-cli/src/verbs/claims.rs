@@ -6,7 +6,7 @@ use crate::report::claims::{self, Answer, Report, judge};
 /// `pathmark claims out --report A`
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Folders that `reproduce` or `run` wrote. If several answer a claim, the first one with the report's conditions counts
+    /// Folders that `reproduce` or `run` wrote, each a run. Of several, all with rows under the report's conditions count; their order does not matter
     #[arg(default_value = "out", value_name = "DIR")]
     folders: Vec<PathBuf>,
     /// Also write all verdicts into this folder, as CLAIMS.md and claims/claims.csv. Files that answer more claims are kept
@@ -18,7 +18,7 @@ pub(crate) struct Arguments {
     /// Print an array of objects
     #[arg(long)]
     json: bool,
-    /// Exit with code 1 if a verdict differs from the expected one
+    /// Exit with code 1 if a verdict differs from the expected one, or if its bound is not older than the rows that it judges
     #[arg(long)]
     strict: bool,
 }
@@ -32,9 +32,14 @@ struct Row<'a> {
     verdict: &'static str,
     expected: &'a str,
     measured: String,
+    /// The rule that made the value and its interval, with the number of units.
+    rule: String,
     predicted: String,
     why: &'a str,
-    source: Option<&'a PathBuf>,
+    runs: String,
+    to_settle: String,
+    age: &'static str,
+    source: Option<String>,
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
@@ -66,10 +71,17 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
         print(&answers.iter().map(line).collect::<Vec<String>>().join("\n"))?;
         print(&format!("\n{} claims: {}", answers.len(), claims::totals(&answers)))?;
     }
-    let unexpected: Vec<String> =
-        answers.iter().filter(|a| a.is_unexpected()).map(|a| a.claim.id.to_string()).collect();
-    if arguments.strict && !unexpected.is_empty() {
-        return Err(Error::Check(format!("claims {} have unexpected verdicts", unexpected.join(", "))));
+    let of = |is_wrong: &dyn Fn(&Answer<'_>) -> bool, problem: &str| {
+        let wrong: Vec<String> = answers.iter().filter(|a| is_wrong(a)).map(|a| a.claim.id.to_string()).collect();
+        (!wrong.is_empty()).then(|| format!("claims {} {problem}", wrong.join(", ")))
+    };
+    let problems = [
+        of(&|answer| answer.is_unexpected(), "have unexpected verdicts"),
+        of(&|answer| answer.is_bound_younger(), "have bounds that are not older than the rows that they judge"),
+    ];
+    let problems: Vec<String> = problems.into_iter().flatten().collect();
+    if arguments.strict && !problems.is_empty() {
+        return Err(Error::Check(problems.join("; ")));
     }
     Ok(())
 }
@@ -82,18 +94,25 @@ fn row<'a>(answer: &'a Answer<'_>) -> Row<'a> {
         verdict: answer.verdict.name(),
         expected: &answer.claim.expected,
         measured: answer.measured(),
+        rule: answer.rule(),
         predicted: answer.predicted(),
         why: &answer.why,
-        source: answer.source.as_ref(),
+        runs: answer.in_runs(),
+        to_settle: answer.settled_by(),
+        age: answer.age(),
+        source: answer.source(),
     }
 }
 
 fn line(answer: &Answer<'_>) -> String {
     let claim = answer.claim;
-    let numbers = match answer.source {
-        Some(_) => format!("\n        {}, predicted {}", answer.measured(), answer.predicted()),
+    let numbers = match answer.source() {
+        Some(_) => format!("{}, predicted {}; {}", answer.measured(), answer.predicted(), answer.rule()),
         None => String::new(),
     };
-    let why = if answer.why.is_empty() { String::new() } else { format!("\n        {}", answer.why) };
-    format!("{:>3} {}  {:15} {}{numbers}{why}", claim.id, answer.report.report, answer.verdict.to_string(), claim.claim)
+    let notes = [answer.in_runs(), answer.settled_by(), answer.age().to_string()];
+    let notes: Vec<String> = notes.into_iter().filter(|note| !note.is_empty()).collect();
+    let more = [numbers, notes.join("; "), answer.why.clone()].into_iter().filter(|line| !line.is_empty());
+    let head = format!("{:>3} {}  {:15} {}", claim.id, answer.report.report, answer.verdict.to_string(), claim.claim);
+    std::iter::once(head).chain(more).collect::<Vec<String>>().join("\n        ")
 }

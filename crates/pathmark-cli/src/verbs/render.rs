@@ -86,7 +86,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
         (setup, outcome)
     };
     let image = outcome.film.image();
-    let shown = if arguments.auto_exposure && !format.linear { image_io::auto_exposed(&image) } else { image };
+    let is_exposed = arguments.auto_exposure && !format.linear;
+    let shown = if is_exposed { image_io::auto_exposed(&image, outcome.brightest) } else { image };
     image_io::write_with_notes(&path, &shown, &outcome.provenance(&setup).notes())?;
     if let Some(trace) = &arguments.trace {
         TraceFile::new(&setup, &outcome).write(trace)?;

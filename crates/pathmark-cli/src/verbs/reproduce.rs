@@ -3,7 +3,7 @@
 use super::overall_progress::OverallProgress;
 use super::prelude::*;
 use super::run::{Size, check_failures, note_doubts, rows, tell_left_out};
-use super::selftest::{claim_guards, has_prices, price_guards, try_cases, write_cases, write_guards};
+use super::selftest::{claim_cases, claim_guards, has_prices, price_guards, try_cases, write_cases, write_guards};
 use super::{doctor, strict::Strict};
 use crate::cases_file;
 use crate::check::{self, Case, Effort};
@@ -76,12 +76,16 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     if !has_prices(&arguments.out) {
         claim_guards(&arguments.out, &mut files)?;
     }
+    // The cases take longer than a sixth of all quick experiments, so the quick profile leaves them to `selftest --out`.
+    let tries_cases = profile != Profile::Quick && !cases_file::is_in(&arguments.out);
+    if tries_cases {
+        claim_cases(&arguments.out, &mut files)?;
+    }
     doctor::examine_into(&arguments.out, console)?;
     let Total { rows, failed, timed_out, invalid, left_out, doubts } = run_all(&sweeps, profile, lab, console)?;
-    // The cases take longer than a sixth of all quick experiments, so the quick profile leaves them to `selftest --out`.
-    if profile != Profile::Quick && !cases_file::is_in(&arguments.out) {
+    if tries_cases {
         let all: Vec<&'static Case> = check::cases().collect();
-        write_cases(&arguments.out, &all, &try_cases(&all, Effort::Quick, console)?)?;
+        write_cases(&arguments.out, lab, &all, &try_cases(&all, Effort::Quick, console)?)?;
     }
     if !has_prices(&arguments.out) {
         write_guards(&arguments.out, lab, &price_guards(console))?;

@@ -1,18 +1,18 @@
 //! `pathmark selftest`: the hard cases on this machine, and the costs of guarding against them.
 
 use super::prelude::*;
-use crate::check::guards::{GUARDS, Guard};
+use crate::check::guards::{GUARDS, Guard, GuardTimes};
 use crate::check::{self, Case, Effort, Outcome, SECTIONS, case_row};
 use crate::console::output::lock_folder;
 use crate::experiment::{MACHINE, RunFile, read_run_file};
 use crate::guard_prices::{FILE, FOLDER, PriceRow, read_prices, write_prices};
 use crate::lock::{Lock, Sharing};
-use crate::measure::{Interleaved, available_threads};
+use crate::measure::available_threads;
 use crate::{cases_file, report};
 use std::process::Command;
 
 /// Processes that time the guards.
-const PROCESSES: u64 = 4;
+const PROCESSES: u64 = 8;
 
 /// `pathmark selftest --thorough`
 #[derive(Args)]
@@ -45,7 +45,7 @@ struct Row<'a> {
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     if arguments.guard_times {
-        return print_json(&GUARDS.iter().map(Guard::times).collect::<Vec<_>>());
+        return print_json(&GUARDS.iter().map(Guard::times).collect::<Result<Vec<_>>>()?);
     }
     let chosen = chosen(&arguments.cases)?;
     let _lock = arguments.out.as_ref().map(|out| folder_for_results(out)).transpose()?;
@@ -68,7 +68,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
         }
     }
     if let Some(out) = &arguments.out {
-        write_cases(out, &chosen, &outcomes)?;
+        write_cases(out, lab, &chosen, &outcomes)?;
         if !are_priced {
             write_guards(out, lab, &prices)?;
         }
@@ -91,7 +91,7 @@ fn folder_for_results(out: &Path) -> Result<Lock> {
     if !has_prices(out) || read_prices(&out.join(FOLDER).join(FILE))?.is_empty() {
         claim_guards(out, &mut files)?;
     }
-    cases_file::claim(out, &mut files)?;
+    claim_cases(out, &mut files)?;
     report::claim("out", out, &mut files)?;
     lock_folder(out, Sharing::Shared)
 }
@@ -162,6 +162,9 @@ fn price_list(rows: &[PriceRow]) -> String {
             (Some(ratio), Some(low), Some(high)) => format!("{ratio:.2} times the time ({low:.2} to {high:.2})"),
             _ => "not timed".to_string(),
         };
+        let times = row.share.map_or(times.clone(), |share| {
+            format!("{times}, {:+.1} % of a sample of {} ({})", 100.0 * share, row.scene, row.often)
+        });
         lines.push(format!("  {}: {} instead of {}, {times}", row.guard, row.with, row.without));
         lines.push(format!("    {}: {:.3e} instead of {:.3e}", row.error, row.error_with, row.error_without));
     }
@@ -176,10 +179,23 @@ pub(super) fn try_cases(cases: &[&'static Case], effort: Effort, console: &Conso
     Ok(outcomes)
 }
 
-/// Writes the outcomes of some cases into a folder of results.
-pub(super) fn write_cases(out: &Path, cases: &[&'static Case], outcomes: &[Outcome]) -> Result<()> {
+/// Adds the cases to the files that a command will write. Refuses a folder that has them.
+pub(super) fn claim_cases(out: &Path, files: &mut Files) -> Result<()> {
+    cases_file::claim(out, files)?;
+    files.renews("out", &out.join(cases_file::FOLDER).join(MACHINE), |path| read_run_file(path).is_ok())
+}
+
+/// Writes the outcomes of some cases into a folder of results, with the command and the machine.
+pub(super) fn write_cases(out: &Path, lab: &Lab, cases: &[&'static Case], outcomes: &[Outcome]) -> Result<()> {
     let rows: Vec<_> = cases.iter().zip(outcomes).map(|(case, outcome)| case_row(case, outcome)).collect();
+    write_machine(&out.join(cases_file::FOLDER), lab)?;
     cases_file::write(out, &rows)
+}
+
+fn write_machine(folder: &Path, lab: &Lab) -> Result<()> {
+    std::fs::create_dir_all(folder).map_err(|e| Error::system("creating", folder, e))?;
+    let program = lab.program().join(" ");
+    RunFile { program, ..RunFile::of_now(crate::command_line()) }.write(&folder.join(MACHINE))
 }
 
 /// Whether a folder of results has the price list of the guards already.
@@ -190,13 +206,13 @@ pub(super) fn has_prices(out: &Path) -> bool {
 /// Measures all guards in several processes: a process has one memory layout, which may favour one of two methods.
 pub(super) fn price_guards(console: &Console) -> Vec<PriceRow> {
     console.begin("guards", PROCESSES);
-    let mut processes: Vec<Vec<Interleaved>> = vec![Vec::new(); GUARDS.len()];
+    let mut processes: Vec<Vec<GuardTimes>> = vec![Vec::new(); GUARDS.len()];
     for done in 1..=PROCESSES {
         let own =
             std::env::current_exe().and_then(|own| Command::new(own).args(["selftest", "--guard-times"]).output());
-        let times = own.ok().and_then(|output| serde_json::from_slice::<Vec<Option<Interleaved>>>(&output.stdout).ok());
+        let times = own.ok().and_then(|output| serde_json::from_slice::<Vec<GuardTimes>>(&output.stdout).ok());
         for (all, own) in processes.iter_mut().zip(times.into_iter().flatten()) {
-            all.extend(own);
+            all.push(own);
         }
         console.advance(done);
     }
@@ -215,8 +231,6 @@ pub(super) fn claim_guards(out: &Path, files: &mut Files) -> Result<()> {
 /// Writes the price list into a folder of results, with the command and the machine.
 pub(super) fn write_guards(out: &Path, lab: &Lab, rows: &[PriceRow]) -> Result<()> {
     let folder = out.join(FOLDER);
-    std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
-    let program = lab.program().join(" ");
-    RunFile { program, ..RunFile::of_now(crate::command_line()) }.write(&folder.join(MACHINE))?;
+    write_machine(&folder, lab)?;
     write_prices(&folder.join(FILE), rows)
 }

@@ -5,12 +5,13 @@ use super::run::note_doubts;
 use crate::cluster::MessageCosts;
 use crate::console::output::aligned;
 use crate::experiment::{MESSAGES, read_calibration};
-use crate::measure::{CalibrationRow, ForeignLoad, SERIAL, TimingConcerns, TraceFile, available_threads, calibrate};
-use crate::report::rank_forecasts::{self, RankPlan};
-use crate::report::{Block, Results, forecasts};
-use crate::simulate::{
-    Contender, Hardware, Messages, Noise, Observed, Prediction, Speeds, contenders, forecast, predict,
+use crate::measure::{
+    CALIBRATIONS, CalibrationRow, ForeignLoad, SERIAL, TimingConcerns, TraceFile, available_threads, calibrate,
 };
+use crate::report::forecasts::{self, Predicted};
+use crate::report::rank_forecasts::{self, RankPlan};
+use crate::report::{Block, LEVEL, Results};
+use crate::simulate::{Contender, Hardware, Messages, Noise, Observed, Speeds, contenders, forecast};
 
 /// `pathmark simulate run.csv --workers 1..4096`, after `pathmark render cornell --strategy serial --trace run.csv`
 #[derive(Args)]
@@ -54,18 +55,19 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     let workers = parse_workers("workers", &arguments.workers)?;
     let hardware = hardware(arguments)?;
     let measured = if arguments.trace.is_dir() { Some(Results::open(lab, &arguments.trace)?) } else { None };
-    let trace = match &measured {
-        Some(results) => results.largest_serial_trace()?.ok_or_else(|| {
-            let problem = "holds no trace of the strategy serial";
-            InputError::new("trace", arguments.trace.display().to_string(), problem)
-        })?,
-        None => TraceFile::read(&arguments.trace)?,
+    let traces = match &measured {
+        Some(results) => results.largest_serial_traces()?,
+        None => vec![TraceFile::read(&arguments.trace)?],
+    };
+    let Some(trace) = traces.first() else {
+        let problem = "holds no trace of the strategy serial";
+        return Err(InputError::new("trace", arguments.trace.display().to_string(), problem).into());
     };
     if let Some(doubt) = trace.doubt() {
         console.note(&doubt);
     }
-    let costs = trace.costs_s();
-    check_noise(arguments, &hardware, costs.iter().sum())?;
+    let costs: Vec<Vec<f64>> = traces.iter().map(TraceFile::costs_s).collect();
+    check_noise(arguments, &hardware, costs[0].iter().sum())?;
     // A strategy that is named twice is one.
     let mut named: Vec<String> = Vec::new();
     for name in &arguments.strategies {
@@ -104,12 +106,12 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     let mut contenders = contenders(lab, &rows);
 
     if !arguments.no_check {
-        let (predictions, doubts) = match &measured {
+        let (predicted, doubts) = match &measured {
             Some(results) => (forecasts::predictions(results, &contenders)?, results.doubts()),
-            None => predict_live(lab, &trace, &contenders, console)?,
+            None => predict_live(lab, trace, &contenders, console)?,
         };
         note_doubts(&doubts, console);
-        show(&forecasts::prediction_blocks(&predictions))?;
+        show(&forecasts::prediction_blocks(&predicted))?;
     }
     let settings = &trace.header.settings;
     let spec = &settings.spec;
@@ -124,7 +126,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     );
     let (blocks, table) = if rules.is_empty() {
         contenders.push(Contender::longest_first());
-        let rows = forecast(&costs, &contenders, &workers, &hardware);
+        let rows = forecast(&costs, &contenders, &workers, &hardware, LEVEL);
         (forecasts::forecast_blocks(&rows, &workload, hardware == Hardware::default(), &named), "forecast.csv")
     } else {
         let messages = messages(arguments, console)?;
@@ -155,7 +157,7 @@ fn overheads(arguments: &Arguments, lab: &Lab, names: &[String], console: &Conso
     }
     console.note("calibrating: every strategy hands out empty jobs");
     let load = ForeignLoad::begin();
-    let rows = calibrate(lab, names)?;
+    let rows = calibrate(lab, names, 0..CALIBRATIONS)?;
     if let Some(warning) = load.warning() {
         console.note(&warning);
     }
@@ -282,7 +284,7 @@ fn predict_live(
     trace: &TraceFile,
     contenders: &[Contender],
     console: &Console,
-) -> Result<(Vec<Prediction>, TimingConcerns)> {
+) -> Result<(Predicted, TimingConcerns)> {
     let processors = available_threads();
     let base = &trace.header.settings;
     let work_s: f64 = trace.costs_s().iter().sum();
@@ -306,7 +308,7 @@ fn predict_live(
         console.note(&format!(
             "this machine is not predicted: trying all strategies on the jobs of the trace would take {round_s:.0} s"
         ));
-        return Ok((Vec::new(), TimingConcerns::default()));
+        return Ok((Predicted::of(&[], contenders, processors), TimingConcerns::default()));
     }
     let rounds = (CHECK_S / round_s).clamp(1.0, 5.0) as u64;
     let (mut runs, mut doubts) = (Vec::new(), TimingConcerns::default());
@@ -321,20 +323,22 @@ fn predict_live(
             let outcome = setup.run(None)?;
             doubts.add(&outcome.warned());
             let inflation = forecasts::inflation(outcome.cpu_s(), alone.cpu_s());
+            let own = TraceFile::new(setup, &outcome).costs_s();
             let observed = Observed {
                 inflation,
                 decomposition: settings.decomposition.clone(),
                 strategy: settings.strategy.clone(),
                 workers: setup.threads(),
+                repetition: round as u32,
                 makespan_s: outcome.makespan_s,
+                busy: (setup.threads() <= processors).then(|| own.iter().sum::<f64>() / costs.iter().sum::<f64>()),
             };
             runs.push((observed, costs.clone()));
             console.advance(round * schedules.len() as u64 + index as u64 + 1);
         }
     }
     console.end();
-    let observed = runs.iter().map(|(observed, costs)| (observed.clone(), costs.as_slice()));
-    Ok((predict(observed, contenders, processors), doubts))
+    Ok((Predicted::of(&runs, contenders, processors), doubts))
 }
 
 fn show(blocks: &[Block]) -> Result<()> {

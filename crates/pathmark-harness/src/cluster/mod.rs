@@ -175,10 +175,12 @@ impl Cluster {
         let makespan_s = share.elapsed_s();
         wait.seconds += makespan_s - finished_s;
         hand_out.free()?;
-        let busy_s = share.busy_s();
+        let (busy_s, brightest) = (share.busy_s(), share.brightest());
         let done = share.take_done();
-        let row = [done.len() as u64, wait.requests, busy_s.to_bits(), wait.seconds.to_bits()];
+        let row = [done.len() as u64, wait.requests, busy_s.to_bits(), wait.seconds.to_bits(), brightest.to_bits()];
         let rows = world.all_gather(&row).map_err(failed)?;
+        // The maximum over the ranks that an exposure to the brightest pixel needs, on every rank.
+        let brightest = rows.chunks_exact(row.len()).map(|row| f64::from_bits(row[4])).fold(0.0, f64::max);
         let first_worker = u32::try_from(world.rank() * threads).unwrap_or(u32::MAX);
         let before_s = share.elapsed_s();
         let words = world.gather(&wire::words(&done, first_worker)).map_err(failed)?;
@@ -195,7 +197,8 @@ impl Cluster {
         drop(done);
         let done =
             wire::jobs(&words, share.plan()).ok_or_else(|| Error::Check("a rank sent invalid jobs".to_string()))?;
-        Ok(Some(MergedShare { done, workers: world.size() * threads, makespan_s }))
+        let gather_s = share.elapsed_s() - makespan_s;
+        Ok(Some(MergedShare { done, workers: world.size() * threads, makespan_s, gather_s, brightest }))
     }
 
     /// Renders in rounds. On rank 0, calls `lead` with a function that extends its film; `lead` decides when to stop.

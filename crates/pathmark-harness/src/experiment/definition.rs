@@ -42,8 +42,11 @@ pub(super) const REFERENCE_SPP: &str = "reference-spp";
 const TAKEN: &[&str] = &["CLAIMS.md", "benches", "check", "claims", "earlier", "guards", "references", "report.html"];
 
 /// The features that not every build has, and whether this one has them. An experiment may require them.
-pub(super) const FEATURES: [(&str, bool); 2] =
-    [("openmp", cfg!(feature = "openmp")), ("more-pools", cfg!(feature = "more-pools"))];
+pub(super) const FEATURES: [(&str, bool); 3] = [
+    ("openmp", cfg!(feature = "openmp")),
+    ("more-pools", cfg!(feature = "more-pools")),
+    ("lane-profiles", cfg!(feature = "lane-profiles")),
+];
 
 /// A chapter of the report page. Each experiment names its chapter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Deserialize)]
@@ -279,7 +282,7 @@ impl Definition {
     }
 
     /// The object on whose pixels errors are measured, too.
-    pub(super) fn object(&self) -> Option<&str> {
+    pub fn object(&self) -> Option<&str> {
         self.reference.as_ref()?.object.as_deref()
     }
 

@@ -14,7 +14,7 @@ use crate::atomic_file;
 use crate::csv_file;
 use crate::digest;
 use crate::error::{Error, InputError, Result};
-use crate::measure::Record;
+use crate::measure::{Record, joined_calibrations, read_calibration};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::ErrorKind;
@@ -241,11 +241,14 @@ fn write(parts: &[Part], rows: &[Record], sweep: &MergedSweep, command: &str) ->
         }
     }
     csv_file::write(&folder.join(RECORDS), rows)?;
-    let first = &parts[0];
-    for file in ["experiment.toml", "calibration.csv"] {
-        if first.folder.join(file).is_file() {
-            copy(&first.folder.join(file), &folder.join(file))?;
-        }
+    let definition = parts[0].folder.join("experiment.toml");
+    if definition.is_file() {
+        copy(&definition, &folder.join("experiment.toml"))?;
+    }
+    let calibrations = parts.iter().map(|part| part.folder.join("calibration.csv")).filter(|path| path.is_file());
+    let calibrations = calibrations.map(|path| read_calibration(&path)).collect::<Result<Vec<_>>>()?;
+    if !calibrations.is_empty() {
+        csv_file::write(&folder.join("calibration.csv"), joined_calibrations(calibrations))?;
     }
     run_of(parts, command).write(&folder.join(MACHINE))
 }

@@ -5,7 +5,7 @@ use crate::atomic_file;
 use crate::digest;
 use crate::error::{InputError, Result};
 use crate::input::{parse, read_text};
-use crate::measure::Machine;
+use crate::measure::{Machine, utc_now};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::process;
@@ -36,6 +36,9 @@ pub struct RunFile {
     /// `None` without another program, and in older files.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sweep: Option<String>,
+    /// The time at which the file was written, before the first row; empty in older files.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub started_utc: String,
     /// The fewest rows of the finished sweep; `None` in older files.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rows: Option<u64>,
@@ -45,6 +48,10 @@ pub struct RunFile {
     /// Whether the command set the repetitions, so that the limits of matrices did not apply.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub uncapped: bool,
+    /// The devices that the kernels of this sweep may use, each with the driver's name: `cuda:0: NVIDIA H100`. Empty
+    /// without such a kernel, and in older files.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub devices: Vec<String>,
     /// SHA-256 of the definition's text, shortened to 16 hexadecimal digits.
     pub definition_hash: String,
     pub machine: Machine,
@@ -63,7 +70,7 @@ impl RunFile {
     /// The description of a measurement without a definition, on this machine.
     pub fn of_now(command: String) -> Self {
         let profile = Profile::Quick.name().to_string();
-        Self { command, profile, machine: Machine::look(), ..Self::default() }
+        Self { command, profile, started_utc: utc_now(), machine: Machine::look(), ..Self::default() }
     }
 
     pub fn write(&self, path: &Path) -> Result<()> {
@@ -108,6 +115,24 @@ impl RunFile {
     }
 }
 
+/// The devices that the cells' kernels name, and accelerators for kernels that name none.
+#[cfg(feature = "device")]
+fn devices(cells: &[Cell]) -> Vec<String> {
+    let kernels: Vec<&str> = cells.iter().map(|cell| cell.settings.spec.kernel.as_str()).collect();
+    if !kernels.iter().any(|kernel| kernel.contains(crate::kernel::DEVICE_NAME)) {
+        return Vec::new();
+    }
+    let is_meant = |id: &str| kernels.iter().any(|kernel| kernel.contains(id));
+    let found = crate::kernel::devices().into_iter().filter(|device| device.is_there);
+    let used = found.filter(|device| device.is_accelerator || is_meant(&device.id));
+    used.map(|device| format!("{}: {}", device.id, device.about)).collect()
+}
+
+#[cfg(not(feature = "device"))]
+fn devices(_: &[Cell]) -> Vec<String> {
+    Vec::new()
+}
+
 impl Sweep<'_> {
     pub(super) fn run_file(&self) -> Result<RunFile> {
         let Self { definition, options, cells, until, .. } = self;
@@ -124,6 +149,7 @@ impl Sweep<'_> {
             rows: Some(cells.iter().map(rows).sum()),
             until: until.as_ref().map(|until| until.text.clone()),
             uncapped: options.say_how_often(),
+            devices: devices(cells),
             definition_hash: digest::of_text(&definition.text),
             ..RunFile::of_now(options.command.clone())
         })

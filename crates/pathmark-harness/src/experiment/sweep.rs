@@ -22,7 +22,7 @@ use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
 use crate::film::Film;
-use crate::measure::{LeftOut, Record, TimingConcerns, write_calibration};
+use crate::measure::{CALIBRATIONS, LeftOut, Record, TimingConcerns, write_calibrations};
 use crate::temporary;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -165,7 +165,7 @@ impl<'a> Sweep<'a> {
         let calibration = folder.join("calibration.csv");
         if definition.keeps(Keep::Calibration) && !calibration.is_file() {
             progress.note("calibrating: every strategy hands out empty jobs");
-            write_calibration(&definition.lab, &calibration)?;
+            write_calibrations(&definition.lab, &calibration, CALIBRATIONS / 2)?;
         }
         let messages = folder.join(MESSAGES);
         if definition.keeps(Keep::Messages) && !messages.is_file() && !write_messages(&messages)? {
@@ -232,6 +232,10 @@ impl<'a> Sweep<'a> {
         progress.end();
         if let Some(missed) = running.missed_goals() {
             progress.note(&missed);
+        }
+        if definition.keeps(Keep::Calibration) {
+            progress.note("calibrating again: the difference shows how well the costs are known");
+            write_calibrations(&definition.lab, &calibration, CALIBRATIONS)?;
         }
         let summary = running.finish()?;
         if options.count_instructions {

@@ -47,18 +47,16 @@ pub(super) fn bad_pixel(image: &Image, index: usize, problem: &str) -> Error {
     Error::Check(format!("pixel ({}, {}) = ({r}, {g}, {b}) {problem}", index % width, index / width))
 }
 
-/// Returns the picture divided by its largest finite channel, as in report C; unchanged if that is not above zero. It is
-/// for viewing only, not for measuring: one bright pixel darkens all others, so the values of two exposed pictures are not
-/// comparable.
+/// Returns the picture divided by its brightest channel ([`Image::brightest`]), as in report C; unchanged if that is not
+/// above zero. It is for viewing only, not for measuring: one bright pixel darkens all others, so the values of two exposed
+/// pictures are not comparable.
 #[must_use]
-pub fn auto_exposed(image: &Image) -> Image {
-    let finite = image.pixels.iter().flatten().copied().filter(|value| value.is_finite());
-    let largest = finite.fold(0.0, f64::max);
-    if largest <= 0.0 {
+pub fn auto_exposed(image: &Image, brightest: f64) -> Image {
+    if brightest <= 0.0 {
         return image.clone();
     }
     // Divided, not multiplied by the inverse: the largest value must become exactly 1, even if its inverse is infinite.
-    Image { pixels: image.pixels.iter().map(|pixel| pixel.map(|value| value / largest)).collect(), ..*image }
+    Image { pixels: image.pixels.iter().map(|pixel| pixel.map(|value| value / brightest)).collect(), ..*image }
 }
 
 #[cfg(test)]
@@ -72,6 +70,7 @@ mod tests {
 
     #[test]
     fn the_largest_channel_becomes_one() {
+        let auto_exposed = |image: &Image| auto_exposed(image, image.brightest());
         assert_eq!(auto_exposed(&row(&[4.0, 1.0])).pixels, [[1.0, 0.0, 0.0625], [0.25, 0.0, 0.0625]]);
         // Dark pictures are brightened.
         assert_eq!(auto_exposed(&row(&[0.125])).pixels, [[0.5, 0.0, 1.0]]);
@@ -82,6 +81,7 @@ mod tests {
 
     #[test]
     fn images_without_a_largest_value_stay() {
+        let auto_exposed = |image: &Image| auto_exposed(image, image.brightest());
         assert_eq!(auto_exposed(&Image::new(3, 2)), Image::new(3, 2));
         let tiny = Image { width: 1, height: 1, pixels: vec![[5e-324, 0.0, 0.0]] };
         assert_eq!(auto_exposed(&tiny).pixels, [[1.0, 0.0, 0.0]]);

@@ -5,19 +5,24 @@
 //! before the clock starts, so a pool's workers may still be starting when the jobs come. All strategies take turns.
 //! Each row is the median of [`ROUNDS`] rounds, or of as many as fit into [`BUDGET`]; a first round is discarded.
 //!
+//! A calibration is repeated: a sweep makes half of the [`CALIBRATIONS`] before its first cell and half after its last
+//! one. The costs differ from one calibration to the next, and the forecasts' intervals contain this difference.
+//!
 //! The simulator interprets the rows (`simulate::Overheads`).
 
 use super::available_threads;
 use super::usage::Usage;
 use crate::analysis::quantile::median;
 use crate::csv_file;
-use crate::error::{Error, Result};
+use crate::error::{Error, InputError, Result};
 use crate::lab::Lab;
 use crate::strategy::{Config, Spawner, SystemThreads, Workers};
 use serde::{Deserialize, Serialize};
+use std::borrow::Borrow;
 use std::hint::black_box;
 use std::io;
 use std::num::NonZeroUsize;
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -25,9 +30,11 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Most rounds that count towards the median.
-const ROUNDS: usize = 25;
+const ROUNDS: usize = 9;
 /// No round begins after this time; at least three count.
-const BUDGET: Duration = Duration::from_millis(1200);
+const BUDGET: Duration = Duration::from_millis(400);
+/// Calibrations of a sweep: with eight, the quantile of Student's t is 2.4; with three, it would be 4.3.
+pub const CALIBRATIONS: u32 = 8;
 /// Jobs of a run: few, for the cost of a run, and many, for the cost of a job.
 const JOBS: [usize; 2] = [200, 20_000];
 /// The same if each job is a thread.
@@ -45,6 +52,9 @@ pub struct CalibrationRow {
     pub cpu_s: Option<f64>,
     /// Threads that the strategy started during the run; 0 for pools.
     pub started: usize,
+    /// The calibration that the row belongs to, from 0. Older files have one calibration and no such column.
+    #[serde(default)]
+    pub calibration: u32,
 }
 
 #[derive(Default)]
@@ -64,8 +74,9 @@ impl Spawner for Counted {
     }
 }
 
-/// Times empty jobs under each of these strategies, given as in [`super::Settings::strategy`].
-pub fn calibrate(lab: &Lab, strategies: &[String]) -> Result<Vec<CalibrationRow>> {
+/// Times empty jobs under each of these strategies, given as in [`super::Settings::strategy`]: one calibration for each
+/// number of `calibrations`.
+pub fn calibrate(lab: &Lab, strategies: &[String], calibrations: Range<u32>) -> Result<Vec<CalibrationRow>> {
     let mut rows = Vec::new();
     for strategy in strategies {
         let (entry, _) = lab.strategy_named(strategy)?;
@@ -82,38 +93,81 @@ pub fn calibrate(lab: &Lab, strategies: &[String]) -> Result<Vec<CalibrationRow>
                 seconds: 0.0,
                 cpu_s: None,
                 started: 0,
+                calibration: 0,
             }));
         }
     }
-    let mut times = vec![(Vec::new(), Vec::new()); rows.len()];
+    let mut all = Vec::new();
+    for calibration in calibrations {
+        all.extend(calibrated(lab, &rows)?.into_iter().map(|row| CalibrationRow { calibration, ..row }));
+    }
+    Ok(all)
+}
+
+/// One calibration: these rows with their median times.
+fn calibrated(lab: &Lab, rows: &[CalibrationRow]) -> Result<Vec<CalibrationRow>> {
+    let mut rounds: Vec<Vec<CalibrationRow>> = vec![Vec::new(); rows.len()];
     let start = Instant::now();
     for round in 0..=ROUNDS {
         if round > 3 && start.elapsed() > BUDGET {
             break;
         }
-        for (row, times) in rows.iter_mut().zip(&mut times) {
-            *row = run_empty_jobs(lab, row)?;
+        for (row, of_row) in rows.iter().zip(&mut rounds) {
+            let timed = run_empty_jobs(lab, row)?;
             if round > 0 {
-                times.0.push(row.seconds);
-                times.1.extend(row.cpu_s);
+                of_row.push(timed);
             }
         }
     }
-    for (row, (seconds, cpu_s)) in rows.iter_mut().zip(&times) {
-        row.seconds = median(seconds).unwrap_or_default();
-        row.cpu_s = median(cpu_s);
-    }
-    Ok(rows)
+    Ok(rounds.iter().filter_map(|rounds| CalibrationRow::median(rounds)).collect())
 }
 
-/// Times all strategies of the table and writes the rows: `calibration.csv`, beside those of a sweep.
-pub fn write_calibration(lab: &Lab, path: &Path) -> Result<()> {
-    let strategies: Vec<String> = lab.strategies().iter().map(|entry| entry.name.to_string()).collect();
-    csv_file::write(path, calibrate(lab, &strategies)?)
+impl CalibrationRow {
+    /// The row with the median times of several rows of one schedule; `None` without rows.
+    pub fn median<R: Borrow<Self>>(rows: &[R]) -> Option<Self> {
+        let last = rows.last()?.borrow();
+        let seconds: Vec<f64> = rows.iter().map(|row| row.borrow().seconds).collect();
+        let cpu_s: Vec<f64> = rows.iter().filter_map(|row| row.borrow().cpu_s).collect();
+        Some(Self { seconds: median(&seconds)?, cpu_s: median(&cpu_s), ..last.clone() })
+    }
 }
+
+/// Writes calibrations of all strategies of the table to `calibration.csv`, beside the rows of a sweep, until there are
+/// `wanted` of them. Calibrations that the file already has stay.
+pub fn write_calibrations(lab: &Lab, path: &Path, wanted: u32) -> Result<()> {
+    let mut rows = if path.is_file() { read_calibration(path)? } else { Vec::new() };
+    let first = rows.iter().map(|row| row.calibration + 1).max().unwrap_or(0);
+    if first >= wanted {
+        return Ok(());
+    }
+    let strategies: Vec<String> = lab.strategies().iter().map(|entry| entry.name.to_string()).collect();
+    rows.extend(calibrate(lab, &strategies, first..wanted)?);
+    csv_file::write(path, rows)
+}
+
+/// Each calibration of a file is replayed, so a number above this is a damaged file.
+const MOST: u32 = 1000;
 
 pub fn read_calibration(path: &Path) -> Result<Vec<CalibrationRow>> {
-    csv_file::read(path)
+    let rows: Vec<CalibrationRow> = csv_file::read(path)?;
+    match rows.iter().position(|row| row.calibration >= MOST) {
+        None => Ok(rows),
+        Some(index) => {
+            let error = InputError::new("calibration", rows[index].calibration.to_string(), "is too large");
+            let allowed = error.allowed(format!("at most {}", MOST - 1));
+            Err(allowed.in_file(path.display().to_string(), Some((index + 2, 1))).into())
+        }
+    }
+}
+
+/// The calibrations of several files, numbered one after the other.
+pub fn joined_calibrations(files: Vec<Vec<CalibrationRow>>) -> Vec<CalibrationRow> {
+    let mut joined: Vec<CalibrationRow> = Vec::new();
+    for rows in files {
+        let first = joined.iter().map(|row| row.calibration + 1).max().unwrap_or(0);
+        joined.extend(rows.into_iter().map(|row| CalibrationRow { calibration: first + row.calibration, ..row }));
+    }
+    joined
 }
 
 /// 1, 2, 4 and so on below `most`, and `most`.
@@ -161,6 +215,7 @@ mod tests {
             seconds: 0.1,
             cpu_s,
             started: 2,
+            calibration: 3,
         };
         let rows = vec![row(None), row(Some(0.3))];
         let mut file = csv::Writer::from_writer(Vec::new());
@@ -173,15 +228,67 @@ mod tests {
         assert_eq!(read.unwrap(), rows);
     }
 
+    /// A file of an earlier version has no column for the calibration.
+    #[test]
+    fn an_older_file_is_one_calibration() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("calibration.csv");
+        std::fs::write(&path, "strategy,threads,jobs,seconds,cpu_s,started\nserial,1,200,0.5,,0\n").unwrap();
+        assert_eq!(read_calibration(&path).unwrap()[0].calibration, 0);
+    }
+
+    #[test]
+    fn a_damaged_number_is_refused_with_its_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("calibration.csv");
+        let rows = "serial,1,200,0.5,,0,999\nserial,1,200,0.5,,0,4294967295\n";
+        std::fs::write(&path, format!("strategy,threads,jobs,seconds,cpu_s,started,calibration\n{rows}")).unwrap();
+        let error = read_calibration(&path).unwrap_err().to_string();
+        assert!(error.contains("calibration.csv:3") && error.contains("at most 999"), "{error}");
+    }
+
+    #[test]
+    fn joined_calibrations_stay_apart() {
+        let row = |calibration: u32, seconds: f64| CalibrationRow {
+            strategy: "serial".to_owned(),
+            threads: 1,
+            jobs: 200,
+            seconds,
+            cpu_s: None,
+            started: 0,
+            calibration,
+        };
+        let joined = joined_calibrations(vec![vec![row(0, 1.0), row(1, 2.0)], vec![], vec![row(0, 3.0), row(1, 4.0)]]);
+        let told: Vec<(u32, f64)> = joined.iter().map(|row| (row.calibration, row.seconds)).collect();
+        assert_eq!(told, [(0, 1.0), (1, 2.0), (2, 3.0), (3, 4.0)]);
+    }
+
+    /// A second call adds the missing calibrations, and a third one changes nothing.
+    #[test]
+    fn calibrations_are_added_to_a_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("calibration.csv");
+        let lab = Lab::new();
+        write_calibrations(&lab, &path, 1).unwrap();
+        let before = read_calibration(&path).unwrap();
+        write_calibrations(&lab, &path, 2).unwrap();
+        let after = read_calibration(&path).unwrap();
+        assert_eq!(after[..before.len()], before[..]);
+        assert_eq!(after.len(), 2 * before.len());
+        assert!(after[before.len()..].iter().all(|row| row.calibration == 1));
+        write_calibrations(&lab, &path, 2).unwrap();
+        assert_eq!(read_calibration(&path).unwrap(), after);
+    }
+
     /// Each strategy gets a positive time for two numbers of jobs, and an unknown strategy is refused.
     #[test]
     fn every_strategy_is_timed() {
         let names: Vec<String> = STRATEGIES.iter().map(|entry| entry.name.to_owned()).collect();
-        let rows = calibrate(&Lab::new(), &names).unwrap();
+        let rows = calibrate(&Lab::new(), &names, 0..1).unwrap();
         for name in &names {
             let of: Vec<_> = rows.iter().filter(|row| &row.strategy == name).collect();
             assert!(of.len() >= 2 && of.iter().all(|row| row.seconds > 0.0), "{of:?}");
         }
-        assert!(calibrate(&Lab::new(), &["no-such-strategy".to_owned()]).is_err());
+        assert!(calibrate(&Lab::new(), &["no-such-strategy".to_owned()], 0..1).is_err());
     }
 }

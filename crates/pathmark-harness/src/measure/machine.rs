@@ -24,7 +24,8 @@ pub struct Machine {
     pub governor: String,
     pub memory_bytes: u64,
     pub system: String,
-    /// Load averages over 1, 5 and 15 minutes when the sweep began: other programs' work disturbs timings.
+    /// Load averages over 1, 5 and 15 minutes when the sweep began: other programs' work disturbs timings. Experiments
+    /// that the same command ran before count, too: hundreds of threads leave a load of hundreds for minutes.
     pub load_average: String,
     pub rustc: String,
     pub target: String,

@@ -43,7 +43,9 @@ pub use crate::settings::{
     available_threads, image_columns, parse_size, schedule_columns, schedule_name,
 };
 pub use bursts::{BurstRow, Bursts, Spin, keeps_threads, run_bursts};
-pub use calibration::{CalibrationRow, calibrate, read_calibration, write_calibration};
+pub use calibration::{
+    CALIBRATIONS, CalibrationRow, calibrate, joined_calibrations, read_calibration, write_calibrations,
+};
 pub use checkpoint::{Checkpoint, Saved};
 pub use chrome_trace::chrome_trace;
 pub use column::Column;

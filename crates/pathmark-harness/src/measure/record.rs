@@ -13,7 +13,7 @@ use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 
 /// Version of the columns.
-pub const SCHEMA: u32 = 12;
+pub const SCHEMA: u32 = 13;
 
 settings_list!(columns {
     /// A row. A run that failed is a row too: `error` says why, and columns without a measurement are empty.
@@ -76,6 +76,11 @@ settings_list!(columns {
         pub makespan_s: Option<f64>,
         /// Seconds to merge the pieces.
         pub merge_s: Option<f64>,
+        /// Seconds from handing over the jobs until one process has the image and its brightest channel: makespan, merge,
+        /// gathering from other processes, and the search for the maximum that an exposure needs. With several processes
+        /// from the barrier before the first job.
+        #[since(13)]
+        pub time_to_image_s: Option<f64>,
         /// CPU seconds in the program during the makespan, over all threads.
         pub cpu_user_s: Option<f64>,
         /// CPU seconds in the operating system during the makespan, over all threads.
@@ -180,6 +185,9 @@ settings_list!(columns {
         pub fireflies: Option<u64>,
         /// Mean radiance over pixels and channels.
         pub mean_radiance: Option<f64>,
+        /// Largest finite channel of any pixel, by which `--auto-exposure` divides; several processes find it together.
+        #[since(13)]
+        pub max_radiance: Option<f64>,
         /// Pixels in which every channel is 0.
         #[since(6)]
         pub black_pixels: Option<u64>,
@@ -321,6 +329,8 @@ impl Record {
         record.strategy_setup_s = Some(outcome.setup_s);
         record.makespan_s = Some(outcome.makespan_s);
         record.merge_s = Some(outcome.merge_s);
+        record.time_to_image_s = Some(outcome.time_to_image_s);
+        record.max_radiance = Some(outcome.brightest);
         if let Some(cpu) = &outcome.cpu {
             record.cpu_user_s = Some(cpu.user_s);
             record.cpu_system_s = Some(cpu.system_s);

@@ -56,6 +56,10 @@ pub struct Outcome {
     /// Seconds from handing over the jobs until all were done, over all rounds.
     pub makespan_s: f64,
     pub merge_s: f64,
+    /// The largest channel of the image, by which an exposure to the brightest pixel divides.
+    pub brightest: f64,
+    /// Seconds from handing over the jobs until one process has the image and `brightest`.
+    pub time_to_image_s: f64,
     /// The film's checksum; none if the sampler draws other random numbers in each run.
     pub checksum: Option<String>,
     pub warnings: Vec<Warning>,
@@ -133,6 +137,10 @@ pub(super) struct RunTotals {
     setup_s: f64,
     pub(super) makespan_s: f64,
     pub(super) merge_s: f64,
+    /// Seconds after the makespan until one process had the pieces of all.
+    pub(super) gather_s: f64,
+    /// `brightest`, if processes have found it together.
+    pub(super) brightest: Option<f64>,
     cpu: Option<Usage>,
     observed: Observed,
     /// `None` if the settings do not ask for counters.
@@ -266,7 +274,12 @@ impl RunTotals {
             warnings.push(Warning::DebugBuild);
         }
         let kernel = setup.kernel().ok().map(|(kernel, _)| kernel);
+        let before_exposure = Instant::now();
+        let brightest = self.brightest.unwrap_or_else(|| film.brightest());
+        let exposure_s = before_exposure.elapsed().as_secs_f64();
         Outcome {
+            brightest,
+            time_to_image_s: self.makespan_s + self.gather_s + self.merge_s + exposure_s,
             checksum: setup.is_deterministic().then(|| film.checksum()),
             warnings,
             remarks: kernel.as_ref().map(|kernel| kernel.remarks()).unwrap_or_default(),

@@ -52,6 +52,10 @@ pub struct MergedShare {
     pub done: Vec<DoneJob>,
     pub workers: usize,
     pub makespan_s: f64,
+    /// Seconds from the end of the makespan until the jobs were in one process.
+    pub gather_s: f64,
+    /// The largest channel of any pixel of the jobs.
+    pub brightest: f64,
 }
 
 impl Setup {
@@ -68,6 +72,8 @@ impl Setup {
     pub fn assembled(&self, gathered: MergedShare) -> Result<Outcome> {
         let (spec, samples) = (&self.settings().spec, 0..self.settings().spp);
         let mut totals = RunTotals::new();
+        // The sums of a part of a pixel's samples do not tell how bright the pixel is.
+        totals.brightest = Some(gathered.brightest).filter(|_| !self.decomposition.splits_samples());
         let films = totals.assemble(self, from_ref(&samples), gathered)?;
         let film = films.into_iter().next().unwrap_or_else(|| Film::new(spec.width, spec.height));
         Ok(totals.outcome(self, samples.end, film))
@@ -146,6 +152,11 @@ impl Share<'_> {
         &self.done[self.done.len().saturating_sub(count)..]
     }
 
+    /// The largest channel of the pixels that it has rendered.
+    pub fn brightest(&self) -> f64 {
+        self.done.iter().fold(0.0, |largest, job| job.tile.brightest().max(largest))
+    }
+
     pub fn take_done(&mut self) -> Vec<DoneJob> {
         mem::take(&mut self.done)
     }
@@ -159,7 +170,7 @@ impl RunTotals {
         sections: &[Range<u32>],
         gathered: MergedShare,
     ) -> Result<Vec<Film>> {
-        let MergedShare { mut done, workers, makespan_s } = gathered;
+        let MergedShare { mut done, workers, makespan_s, gather_s, brightest: _ } = gathered;
         let spec = &setup.settings().spec;
         let (kernel, build_s) = setup.kernel()?;
         let plan = setup.ordered(setup.plan_of(sections)?, &*kernel);
@@ -182,6 +193,7 @@ impl RunTotals {
         let films = films.finish();
         let used = used.iter().filter(|used| **used).count();
         self.build_s = build_s;
+        self.gather_s += gather_s;
         let round = Round {
             plan: &plan,
             sections,

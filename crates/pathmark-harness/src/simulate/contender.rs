@@ -8,6 +8,7 @@ use crate::analysis::quantile::median;
 use crate::lab::Lab;
 use crate::measure::CalibrationRow;
 use crate::strategy::{ChunkRule, Discipline};
+use std::collections::BTreeMap;
 
 /// A discipline with a name and its mechanism's cost.
 #[derive(Debug, Clone)]
@@ -17,6 +18,8 @@ pub struct Contender {
     pub discipline: Discipline,
     pub order: Order,
     pub overheads: Overheads,
+    /// The costs by each of several calibrations; empty if there was one.
+    pub calibrations: Vec<Overheads>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,7 +38,15 @@ impl Contender {
             discipline: Discipline::Chunks(ChunkRule { size: |_| 1, parameter: 1 }),
             order: Order::LongestFirst,
             overheads: Overheads::default(),
+            calibrations: Vec::new(),
         }
+    }
+
+    /// The contender with the costs by each calibration, or itself if there was one.
+    pub fn by_calibration(&self) -> Vec<Self> {
+        let with =
+            |overheads: &Overheads| Self { overheads: overheads.clone(), calibrations: Vec::new(), ..self.clone() };
+        if self.calibrations.is_empty() { vec![self.clone()] } else { self.calibrations.iter().map(with).collect() }
     }
 
     /// Whether each job has its own thread, so that a worker is not a processor.
@@ -63,12 +74,45 @@ impl Contender {
 }
 
 /// Contenders for the strategies in `rows`, in the order of their first row; strategies that this build lacks are left
-/// out.
+/// out. Their costs are those of the median times over all calibrations; those by each calibration are kept beside them.
 ///
 /// Rules with too few chunks to be timed take their cost per chunk from the cheapest rule that hands out single jobs.
 /// Starting a thread costs the same under every strategy, so strategies that start their workers in the run share the
 /// median of their fitted costs.
 pub fn contenders(lab: &Lab, rows: &[CalibrationRow]) -> Vec<Contender> {
+    let schedules = gathered(rows, |row| (row.strategy.as_str(), row.threads, row.jobs));
+    let typical: Vec<CalibrationRow> = schedules.iter().filter_map(|rows| CalibrationRow::median(rows)).collect();
+    let mut contenders = calibrated(lab, &typical);
+    let calibrations = gathered(rows, |row| row.calibration);
+    if calibrations.len() > 1 {
+        for rows in calibrations {
+            let rows: Vec<CalibrationRow> = rows.into_iter().cloned().collect();
+            let of_one = calibrated(lab, &rows);
+            for contender in &mut contenders {
+                let own = of_one.iter().find(|own| own.name == contender.name);
+                contender.calibrations.extend(own.map(|own| own.overheads.clone()));
+            }
+        }
+    }
+    contenders
+}
+
+/// The rows by their keys, in the order of each key's first row.
+fn gathered<'a, K: Ord>(
+    rows: &'a [CalibrationRow],
+    key: impl Fn(&'a CalibrationRow) -> K,
+) -> Vec<Vec<&'a CalibrationRow>> {
+    let mut groups: BTreeMap<K, (usize, Vec<&CalibrationRow>)> = BTreeMap::new();
+    for (index, row) in rows.iter().enumerate() {
+        groups.entry(key(row)).or_insert_with(|| (index, Vec::new())).1.push(row);
+    }
+    let mut groups: Vec<(usize, Vec<&CalibrationRow>)> = groups.into_values().collect();
+    groups.sort_by_key(|(first, _)| *first);
+    groups.into_iter().map(|(_, group)| group).collect()
+}
+
+/// Contenders from one row of each schedule.
+fn calibrated(lab: &Lab, rows: &[CalibrationRow]) -> Vec<Contender> {
     let mut contenders: Vec<Contender> = Vec::new();
     for row in rows {
         if contenders.iter().any(|contender| contender.name == row.strategy) {
@@ -77,7 +121,8 @@ pub fn contenders(lab: &Lab, rows: &[CalibrationRow]) -> Vec<Contender> {
         let Ok((entry, parameter)) = lab.strategy_named(&row.strategy) else { continue };
         let Ok(discipline) = entry.discipline(parameter.as_deref()) else { continue };
         let overheads = Overheads::fit(rows.iter().filter(|other| other.strategy == row.strategy), discipline);
-        contenders.push(Contender { name: row.strategy.clone(), discipline, order: Order::ByIndex, overheads });
+        let (name, order) = (row.strategy.clone(), Order::ByIndex);
+        contenders.push(Contender { name, discipline, order, overheads, calibrations: Vec::new() });
     }
     let known = contenders.iter().filter(|contender| matches!(contender.discipline, Discipline::Chunks(_)));
     let known = known.filter_map(|contender| contender.overheads.place.as_ref());
@@ -117,6 +162,7 @@ mod tests {
             seconds: 1e-5 * threads as f64 + 1e-8 * jobs as f64,
             cpu_s: None,
             started: 0,
+            calibration: 0,
         };
         let of = |name| [(1, 200), (1, 4000), (2, 200), (2, 4000)].map(|(threads, jobs)| row(name, threads, jobs));
         STRATEGIES.iter().flat_map(|entry| of(entry.name)).collect()
@@ -145,6 +191,7 @@ mod tests {
                 seconds: start_s * threads as f64,
                 cpu_s: None,
                 started: if pool { 0 } else { threads },
+                calibration: 0,
             })
         };
         let rows = [
@@ -157,6 +204,33 @@ mod tests {
         let starts: Vec<f64> = contenders.iter().map(|contender| contender.overheads.at(2).start_s).collect();
         assert!(starts[..3].iter().all(|start| (start - 2e-5).abs() < 1e-12), "{starts:?}");
         assert!((starts[3] - 1e-6).abs() < 1e-12, "{starts:?}");
+    }
+
+    /// Three calibrations in which a thread takes 20, 85 and 30 microseconds to start.
+    #[test]
+    fn each_calibration_has_its_own_costs() {
+        let of = |calibration: u32, start_s: f64| {
+            [1, 2].map(|threads| CalibrationRow {
+                strategy: "static-blocks".to_owned(),
+                threads,
+                jobs: 200,
+                seconds: start_s * threads as f64,
+                cpu_s: None,
+                started: threads,
+                calibration,
+            })
+        };
+        let rows = [of(0, 2e-5), of(1, 8.5e-5), of(2, 3e-5)];
+        let starts = |contenders: &[Contender]| -> Vec<f64> {
+            contenders.iter().map(|contender| contender.overheads.at(2).start_s * 1e6).collect()
+        };
+        let found = contenders(&Lab::new(), rows.as_flattened());
+        let [one] = &found[..] else { panic!("{found:?}") };
+        let close = |a: &[f64], b: &[f64]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
+        assert!(close(&starts(&found), &[30.0]), "{found:?}");
+        assert!(close(&starts(&one.by_calibration()), &[20.0, 85.0, 30.0]), "{found:?}");
+        let alone = contenders(&Lab::new(), &rows[1]);
+        assert!(alone[0].calibrations.is_empty() && close(&starts(&alone[0].by_calibration()), &[85.0]));
     }
 
     #[test]

@@ -23,15 +23,17 @@
 mod contender;
 mod forecast;
 mod hardware;
+mod inflation;
 mod overhead;
 mod prediction;
 mod ranks;
 mod replay;
 
 pub use contender::{Contender, Order, contenders};
-pub use forecast::{Bounds, Forecast, bounds, forecast, longest_first};
+pub use forecast::{Bounds, Forecast, bounds, forecast, longest_first, typical_costs};
 pub use hardware::{Hardware, Noise, Speeds};
+pub use inflation::{BusyRatio, WorkInflation};
 pub use overhead::{Overhead, Overheads};
-pub use prediction::{Agreement, DISTURBED, Observed, Prediction, agreement, predict};
+pub use prediction::{Agreement, DISTURBED, Observed, Prediction, agreement, busy_ratios, predict};
 pub use ranks::{Cluster, Crew, Messages};
 pub use replay::{Replay, replay};

@@ -149,6 +149,7 @@ mod tests {
                 seconds: seconds(jobs),
                 cpu_s: None,
                 started: 0,
+                calibration: 0,
             })
         };
         threads.iter().flat_map(at).collect()

@@ -2,6 +2,7 @@
 
 use super::contender::Contender;
 use super::hardware::Hardware;
+use super::inflation::{BusyRatio, WorkInflation};
 use crate::analysis::quantile::median;
 use std::collections::BTreeMap;
 
@@ -14,7 +15,11 @@ pub struct Observed {
     pub decomposition: String,
     pub strategy: String,
     pub workers: usize,
+    pub repetition: u32,
     pub makespan_s: f64,
+    /// Seconds inside jobs over those of the serial run beside it; `None` if unknown, or if the workers shared
+    /// processors.
+    pub busy: Option<f64>,
     /// Its CPU time over the CPU time of the serial run beside it; 1 if unknown. Above 1, the jobs themselves took
     /// longer than in the serial run, which no schedule can mend: processors share a core, or the clock rate is lower.
     pub inflation: f64,
@@ -34,8 +39,19 @@ pub struct Prediction {
     pub undisturbed_ratio: Option<f64>,
     /// Median of predicted over measured, run by run, for jobs with the costs of the serial run.
     pub plain_ratio: f64,
-    /// The same, with each run's job costs multiplied by its inflation.
+    /// The same, with the costs multiplied by the work inflation that other repetitions had on as many workers; `None`
+    /// if there is no other repetition.
+    pub modelled_ratio: Option<f64>,
+    /// The same, with each run's job costs multiplied by its own inflation, which is no prediction.
     pub ratio: f64,
+}
+
+struct Replayed {
+    measured_s: f64,
+    plain_s: f64,
+    modelled_s: Option<f64>,
+    told_s: f64,
+    inflation: f64,
 }
 
 /// Predicts each run from the costs of its jobs, ideally from a serial run made beside it; runs without a contender are
@@ -47,20 +63,31 @@ pub fn predict<'a>(
     contenders: &[Contender],
     processors: usize,
 ) -> Vec<Prediction> {
-    let mut groups: BTreeMap<(String, String, usize), Vec<[f64; 4]>> = BTreeMap::new();
+    let runs: Vec<(Observed, &[f64])> = runs.into_iter().collect();
+    let ratios = busy_ratios(runs.iter().map(|(run, _)| run));
+    let mut groups: BTreeMap<(String, String, usize), Vec<Replayed>> = BTreeMap::new();
     for (run, costs) in runs {
         let Some(contender) = contenders.iter().find(|contender| contender.name == run.strategy) else { continue };
         let workers = if contender.has_a_thread_per_job() { processors } else { run.workers };
-        let replayed = |costs: &[f64]| contender.replay(costs, workers, &Hardware::default()).makespan_s;
-        let inflated: Vec<f64> = costs.iter().map(|cost| cost * run.inflation).collect();
-        let (predicted_s, plain_s) = (replayed(&inflated), replayed(costs));
-        let key = (run.strategy, run.decomposition, run.workers);
-        groups.entry(key).or_default().push([predicted_s, run.makespan_s, plain_s, run.inflation]);
+        let replayed = |factor: f64| {
+            let costs: Vec<f64> = costs.iter().map(|cost| cost * factor).collect();
+            contender.replay(&costs, workers, &Hardware::default()).makespan_s
+        };
+        let of_others = WorkInflation::of(&ratios, Some(run.repetition)).at(workers);
+        let own = Replayed {
+            measured_s: run.makespan_s,
+            plain_s: replayed(1.0),
+            modelled_s: of_others.map(replayed),
+            told_s: replayed(run.inflation),
+            inflation: run.inflation,
+        };
+        groups.entry((run.strategy, run.decomposition, run.workers)).or_default().push(own);
     }
-    let prediction = |((strategy, decomposition, workers), runs): ((String, String, usize), Vec<[f64; 4]>)| {
-        let middle = |value: fn(&[f64; 4]) -> f64| median(&runs.iter().map(value).collect::<Vec<f64>>());
-        let quiet = runs.iter().filter(|run| (run[3] - 1.0).abs() <= DISTURBED);
-        let quiet: Vec<f64> = quiet.map(|run| run[2] / run[1]).collect();
+    let prediction = |((strategy, decomposition, workers), runs): ((String, String, usize), Vec<Replayed>)| {
+        let middle = |value: fn(&Replayed) -> f64| median(&runs.iter().map(value).collect::<Vec<f64>>());
+        let quiet = runs.iter().filter(|run| (run.inflation - 1.0).abs() <= DISTURBED);
+        let quiet: Vec<f64> = quiet.map(|run| run.plain_s / run.measured_s).collect();
+        let modelled = runs.iter().map(|run| Some(run.modelled_s? / run.measured_s)).collect::<Option<Vec<f64>>>();
         Some(Prediction {
             undisturbed: quiet.len(),
             undisturbed_ratio: median(&quiet),
@@ -68,13 +95,20 @@ pub fn predict<'a>(
             strategy,
             workers,
             runs: runs.len(),
-            predicted_s: middle(|run| run[2])?,
-            measured_s: middle(|run| run[1])?,
-            ratio: middle(|run| run[0] / run[1])?,
-            plain_ratio: middle(|run| run[2] / run[1])?,
+            predicted_s: middle(|run| run.plain_s)?,
+            measured_s: middle(|run| run.measured_s)?,
+            ratio: middle(|run| run.told_s / run.measured_s)?,
+            modelled_ratio: modelled.and_then(|ratios| median(&ratios)),
+            plain_ratio: middle(|run| run.plain_s / run.measured_s)?,
         })
     };
     groups.into_iter().filter_map(prediction).collect()
+}
+
+/// The known ratios of busy times.
+pub fn busy_ratios<'a>(runs: impl IntoIterator<Item = &'a Observed>) -> Vec<BusyRatio> {
+    let ratio = |run: &Observed| Some(BusyRatio { workers: run.workers, repetition: run.repetition, ratio: run.busy? });
+    runs.into_iter().filter_map(ratio).collect()
 }
 
 /// Relative errors of predictions, as (predicted - measured) / measured.
@@ -109,12 +143,15 @@ mod tests {
             discipline: Discipline::InOrder,
             order: Order::ByIndex,
             overheads: Overheads::default(),
+            calibrations: Vec::new(),
         };
         let run = |makespan_s| Observed {
             decomposition: "rows".into(),
             strategy: "serial".into(),
             workers: 1,
+            repetition: 0,
             makespan_s,
+            busy: None,
             inflation: 1.0,
         };
         let other = Observed { strategy: "unknown".into(), ..run(1.0) };
@@ -129,6 +166,34 @@ mod tests {
         let found = predict([(inflated, &[1.0, 1.0][..])], &[contender], 2);
         assert_eq!((found[0].predicted_s, found[0].ratio, found[0].plain_ratio), (2.0, 1.0, 2.0 / 3.0));
         assert_eq!((found[0].undisturbed, found[0].undisturbed_ratio), (0, None));
+    }
+
+    /// Two workers make every job 1.25 times as long. Four jobs of a second then take 2.5 s instead of 2 s: a prediction
+    /// without the factor is 20 % too fast, one with the factor of the other repetition is right.
+    #[test]
+    fn work_inflation_of_other_repetitions_is_predicted() {
+        let contender = Contender::longest_first();
+        let run = |repetition, slower: f64| Observed {
+            decomposition: "rows".into(),
+            strategy: contender.name.clone(),
+            workers: 2,
+            repetition,
+            makespan_s: 2.0 * slower,
+            busy: Some(slower),
+            inflation: slower,
+        };
+        let costs = [1.0; 4];
+        let predicted = |slower: &[f64]| {
+            let runs = slower.iter().enumerate().map(|(index, slower)| (run(index as u32, *slower), &costs[..]));
+            predict(runs, std::slice::from_ref(&contender), 2).remove(0)
+        };
+        let found = predicted(&[1.25, 1.25]);
+        assert!((found.plain_ratio - 0.8).abs() < 1e-12, "{found:?}");
+        assert!((found.modelled_ratio.unwrap() - 1.0).abs() < 1e-12, "{found:?}");
+        // A run never predicts itself: the ratios are 1.5 / 1.0 and 1.0 / 1.5.
+        let found = predicted(&[1.0, 1.5]);
+        assert!((found.modelled_ratio.unwrap() - 0.5 * (1.5 + 1.0 / 1.5)).abs() < 1e-12, "{found:?}");
+        assert_eq!(predicted(&[1.25]).modelled_ratio, None);
     }
 
     #[test]

@@ -187,7 +187,8 @@ mod tests {
 
     fn within(name: &str) -> Contender {
         let discipline = crate::strategy::find(name).unwrap().discipline;
-        Contender { name: name.to_owned(), discipline, order: Order::ByIndex, overheads: Overheads::default() }
+        let (name, overheads) = (name.to_owned(), Overheads::default());
+        Contender { name, discipline, order: Order::ByIndex, overheads, calibrations: Vec::new() }
     }
 
     fn makespan_s(rule: &str, ranks: usize, threads: usize, messages: Messages, costs: &[f64]) -> f64 {

@@ -10,7 +10,7 @@ use pathmark_tracer::error::{Error, InputError, Result};
 use pathmark_tracer::estimator::PathRules;
 use pathmark_tracer::kernel::{Kernel, KernelEntry, KernelPlan, Planned, RenderOptions, Request};
 use pathmark_tracer::math::Precision;
-use pathmark_tracer::scene::{ANGULAR_EMISSION, FOG, LENS, POINT_LIGHT, Scene};
+use pathmark_tracer::scene::{ANGULAR_EMISSION, FAULTS, FOG, LENS, POINT_LIGHT, Scene};
 use std::io;
 use std::sync::Arc;
 
@@ -35,6 +35,7 @@ fn obstacle(request: &Request<'_>) -> Option<&'static str> {
     let obstacles = [
         (scene.effects().cover(FOG), "fog"),
         (scene.effects().cover(ANGULAR_EMISSION), "angular-emission"),
+        (scene.effects().cover(FAULTS), "faults"),
         ((0..scene.objects.len()).any(is_unknown), "material"),
         (spec.clamp.is_some(), "clamp"),
         (epsilon.is_some(), "epsilon"),

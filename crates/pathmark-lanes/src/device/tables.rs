@@ -134,6 +134,7 @@ fn surface(material: &Material) -> Option<Surface> {
             let flags = u32::from(it.sampling == Sampling::Vndf) << 1;
             Surface { flags, eta: it.eta, alpha: alpha(it.facets), ..plain("MATERIAL_KD_KS", it.kd) }
         }
+        Material::GuardedKdKs(_) => return None,
     })
 }
 

@@ -15,7 +15,11 @@ use pathmark_tracer::estimator::PathRules;
 use pathmark_tracer::kernel::{FirstHits, Kernel, KernelEntry, KernelPlan, Planned, RenderOptions, Request, Start};
 use pathmark_tracer::material::Diffuse;
 use pathmark_tracer::math::Precision;
-use pathmark_tracer::scene::{ANGULAR_EMISSION, DiffuseOnly, FOG, LENS, POINT_LIGHT, Scan, Scene, Sphere, View};
+use pathmark_tracer::scene::{
+    ANGULAR_EMISSION, DiffuseOnly, FAULTS, FOG, LENS, POINT_LIGHT, Scan, Scene, Sphere, View,
+};
+#[cfg(feature = "lane-profiles")]
+use pathmark_tracer::scene::{AllEffects, SmallptEffects};
 use std::sync::Arc;
 
 #[derive(Clone, Copy)]
@@ -24,8 +28,17 @@ pub(super) struct InLanes {
     pub(super) precision: Precision,
     pub(super) rules: PathRules,
     pub(super) sampler: Sampler,
-    /// Whether the code for diffuse surfaces alone is used.
-    pub(super) is_diffuse_only: bool,
+    pub(super) version: Version,
+}
+
+/// The materials that the code decides about at run time. It contains no others.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Version {
+    Diffuse,
+    /// Diffuse surfaces, mirrors and glass. Only its price is of interest: it shows what deciding about the others costs.
+    #[cfg(feature = "lane-profiles")]
+    Smallpt,
+    All,
 }
 
 pub(super) struct Lanes {
@@ -39,7 +52,7 @@ pub(super) struct Lanes {
     pub(super) targets: Option<Box<Targets>>,
     pub(super) level: Level,
     pub(super) precision: Precision,
-    pub(super) is_diffuse_only: bool,
+    pub(super) version: Version,
     pub(super) search: Search,
 }
 
@@ -57,7 +70,7 @@ impl Lanes {
     pub(super) fn new(
         scene: &Arc<Scene>,
         options: &RenderOptions,
-        InLanes { level, precision, rules, sampler, is_diffuse_only }: InLanes,
+        InLanes { level, precision, rules, sampler, version }: InLanes,
     ) -> Self {
         let view = options.view(scene);
         let is_round = scene.is_round();
@@ -82,7 +95,7 @@ impl Lanes {
             rules,
             sampler,
             level,
-            is_diffuse_only,
+            version,
         }
     }
 
@@ -102,13 +115,36 @@ const AT_RUN_TIME: &str = "run-time";
 /// Lanes allow fewer primitives than this: single precision must represent a primitive's number exactly.
 pub(crate) const MOST_IN_LANES: usize = 1 << f32::MANTISSA_DIGITS;
 
+/// The version that a profile asks for, in a build that has more versions than scenes need. Their prices tell what a
+/// decision at run time costs.
+#[cfg(feature = "lane-profiles")]
+fn asked(profile: &str) -> Option<Version> {
+    match profile {
+        DiffuseOnly::NAME => Some(Version::Diffuse),
+        SmallptEffects::NAME => Some(Version::Smallpt),
+        AllEffects::NAME => Some(Version::All),
+        _ => None,
+    }
+}
+
+#[cfg(not(feature = "lane-profiles"))]
+fn asked(_: &str) -> Option<Version> {
+    None
+}
+
 /// The feature of a scene or of its settings that lanes have no code for.
 fn obstacle(request: &Request<'_>) -> Option<&'static str> {
     let Request { scene, spec, epsilon, .. } = request;
-    let features = [(FOG, "fog"), (LENS, "lens"), (POINT_LIGHT, "point-light"), (ANGULAR_EMISSION, "angular-emission")];
+    let features = [
+        (FOG, "fog"),
+        (LENS, "lens"),
+        (POINT_LIGHT, "point-light"),
+        (ANGULAR_EMISSION, "angular-emission"),
+        (FAULTS, "faults"),
+    ];
     let of_scene = features.into_iter().find(|(effect, _)| scene.effects().cover(*effect)).map(|(_, name)| name);
     let others = [
-        (spec.effects.is_some(), "effects"),
+        (spec.effects.as_deref().is_some_and(|name| asked(name).is_none()), "effects"),
         (spec.clamp.is_some(), "clamp"),
         (epsilon.is_some(), "epsilon"),
         (scene.owners.len() >= MOST_IN_LANES, "primitives"),
@@ -127,8 +163,10 @@ fn plan(request: &Request<'_>) -> Result<Planned> {
     let is_diffuse = request.scene.objects.iter().all(|object| object.material.effect() == Diffuse::EFFECT);
     // Under next-event estimation, lights take most of the time: code for diffuse surfaces alone would gain 3 %, and
     // take as long to compile as the other versions.
-    let is_diffuse_only = is_diffuse && rules.nee.is_none() && !level.is_fallback();
-    Ok(Planned::Ready(Arc::new(InLanes { level, precision, rules, sampler, is_diffuse_only })))
+    let has_versions = rules.nee.is_none() && !level.is_fallback();
+    let fitting = if is_diffuse && has_versions { Version::Diffuse } else { Version::All };
+    let asked = request.spec.effects.as_deref().filter(|_| has_versions).and_then(asked);
+    Ok(Planned::Ready(Arc::new(InLanes { level, precision, rules, sampler, version: asked.unwrap_or(fitting) })))
 }
 
 impl KernelPlan for InLanes {
@@ -145,7 +183,12 @@ impl KernelPlan for InLanes {
     }
 
     fn effects(&self) -> Option<&'static str> {
-        Some(if self.is_diffuse_only { DiffuseOnly::NAME } else { AT_RUN_TIME })
+        Some(match self.version {
+            Version::Diffuse => DiffuseOnly::NAME,
+            #[cfg(feature = "lane-profiles")]
+            Version::Smallpt => SmallptEffects::NAME,
+            Version::All => AT_RUN_TIME,
+        })
     }
 
     fn scan(&self, scene: &Scene) -> Scan {

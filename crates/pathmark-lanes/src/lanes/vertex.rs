@@ -6,13 +6,26 @@ use super::packet::{Arrival, Packet, Part, Vertex, colour, own_root, vector};
 use super::rays::LanesOf;
 use super::tables::{GIVES_OFF, Kind};
 use crate::simd::{Apart, Float, MOST_LANES, Mask, Number, Words};
+use pathmark_tracer::effect::{EffectSet, Effects, all};
 use pathmark_tracer::kernel::Counts;
-use pathmark_tracer::material::Density;
+use pathmark_tracer::material::{Density, MATERIALS, Mirror};
 use pathmark_tracer::math::{
     Bits, Frame, Ray, Rgb, Vec3, curved_normal, dot, fresnel_dielectric, fresnel_schlick, reflect, refract,
 };
 use pathmark_tracer::sampling::{Purpose, cosine_hemisphere};
 use pathmark_tracer::scene::{AllEffects, Scene};
+
+/// Materials that lanes have no code for: those of the largest profile alone.
+const OTHERS: Effects = all(MATERIALS);
+
+/// Whether the code for a profile contains these materials. It is a constant, so that other code is not compiled.
+pub(super) const fn decides<X: EffectSet>(materials: Effects) -> bool {
+    X::EFFECTS.cover(materials)
+}
+
+const fn is_diffuse_only<X: EffectSet>() -> bool {
+    !decides::<X>(Mirror::EFFECT)
+}
 
 /// Sampled directions of scattering.
 struct Scattered<V: Float> {
@@ -35,7 +48,7 @@ struct Split<V: Float> {
 impl Lanes {
     /// Traces each path to its next vertex and starts its next ray. Returns the lanes whose part of a path has ended.
     #[inline(always)]
-    pub(super) fn advance<V: Float, const AIMS: bool, const DIFFUSE_ONLY: bool>(
+    pub(super) fn advance<V: Float, X: EffectSet, const AIMS: bool>(
         &self,
         packet: &mut Packet<'_, V>,
         counts: &mut Counts,
@@ -84,9 +97,9 @@ impl Lanes {
             Some(at) => at,
             None => self.arrive(packet, met, t, primitive),
         };
-        let (scattered, split) = self.scatter::<V, AIMS, DIFFUSE_ONLY>(packet, &at, &vertex, numbers, ended);
+        let (scattered, split) = self.scatter::<V, X, AIMS>(packet, &at, &vertex, numbers, ended);
         ended |= scattered.absorbed;
-        leave::<V, DIFFUSE_ONLY>(packet, &at, number, &scattered, split, &mut ended);
+        leave::<V, X>(packet, &at, number, &scattered, split, &mut ended);
         ended
     }
 
@@ -136,7 +149,7 @@ impl Lanes {
 
     /// Samples the directions in which paths continue.
     #[inline(always)]
-    fn scatter<V: Float, const AIMS: bool, const DIFFUSE_ONLY: bool>(
+    fn scatter<V: Float, X: EffectSet, const AIMS: bool>(
         &self,
         packet: &Packet<'_, V>,
         at: &Arrival<V>,
@@ -149,7 +162,7 @@ impl Lanes {
         let density = wi.z * V::splat(std::f64::consts::FRAC_1_PI);
         let mut scattered = Scattered { wi, weight: vertex.albedo, is_delta: none, density, absorbed: 0 };
         let mut split = None;
-        if DIFFUSE_ONLY {
+        if is_diffuse_only::<X>() {
             return (scattered, split);
         }
         let going_on = at.lanes & !V::Mask::from_bits(ended);
@@ -166,7 +179,7 @@ impl Lanes {
             split = self.refract::<V, AIMS>(at, vertex, wo, numbers[0], is_glass, &mut scattered);
         }
         let is_other = others & vertex.kind.equal(V::splat(Kind::Other.number()));
-        if is_other.any() {
+        if decides::<X>(OTHERS) && is_other.any() {
             let (inside, primitive) = (at.inside.bits(), at.primitive);
             scattered = V::apart(OneByOne { kernel: self, primitive, wo, numbers, lanes: is_other, inside, scattered });
         }
@@ -298,7 +311,7 @@ impl<T: Number> AllScattered<T> {
 
 /// Starts the next ray segment of each path in its sampled direction.
 #[inline(always)]
-fn leave<V: Float, const DIFFUSE_ONLY: bool>(
+fn leave<V: Float, X: EffectSet>(
     packet: &mut Packet<'_, V>,
     at: &Arrival<V>,
     vertices: V::Bits,
@@ -307,7 +320,7 @@ fn leave<V: Float, const DIFFUSE_ONLY: bool>(
     ended: &mut u32,
 ) {
     let mut direction = at.frame.to_world(scattered.wi);
-    if !DIFFUSE_ONLY && scattered.is_delta.any() {
+    if !is_diffuse_only::<X>() && scattered.is_delta.any() {
         direction = Vec3::select(scattered.is_delta, direction.normalized(), direction);
     }
     let mut splits = 0;

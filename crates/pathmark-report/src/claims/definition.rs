@@ -16,14 +16,21 @@
 //! statistic = "exponent"                  # see `Statistic`
 //! x = "spp"
 //! y = "makespan_s"
+//! unit = "repetition"                     # the independent units: repetition (the default), seed or scene
 //! within = [0.9, 1.1]                     # the report's prediction; or at-least, or at-most
+//! reason = "why the prediction ends there, without looking at rows"
 //! level = 0.95                            # of the interval that is compared with it
 //! comparable-if = { width = 1024, height = 768 }
 //! expected = "confirmed"
+//! frozen = "2026-11-27T21:14:47Z 634521b2" # when query, prediction and expectation were fixed, and in which commit
 //! ```
 //!
-//! Optional: `a-fortiori = true`, if the bound holds under any conditions, and `note`. Instead of a statistic a claim may have `context` (why there is nothing
-//! to measure) or `missing` (why no rows exist yet).
+//! Optional: `changed`, the reason for a change after the first version, `a-fortiori = true`, if the bound holds under any conditions, and `note`. Instead of a
+//! statistic a claim may have `context` (why there is nothing to measure), `not-comparable` (which condition of the report cannot be met) or `missing` (why
+//! no rows exist yet).
+//!
+//! Who changes a query, a prediction or an expectation writes the time into `frozen`: rows that were measured before cannot confirm or refute the claim in
+//! `claims --strict`. A commit cannot contain its own hash, so the time alone is enough.
 
 use super::condition::Conditions;
 use super::statistic::Statistic;
@@ -32,6 +39,7 @@ use crate::error::{Error, InputError, Result};
 use crate::experiment;
 use crate::input::{locate, parse};
 use serde::Deserialize;
+use std::iter::once;
 
 /// A report and its claims.
 #[derive(Debug, Deserialize)]
@@ -63,10 +71,19 @@ pub struct Claim {
     /// The expected verdict of a run at the report's own size. Two names with ` or ` between them mean that the value
     /// is so near the limit that noise decides.
     pub expected: String,
+    /// The time in UTC at which query, prediction and expectation were fixed, and the commit if it is known.
+    frozen: String,
+    /// The reason for a change after the first version; empty if there was none.
+    #[serde(default)]
+    pub changed: String,
+    /// Why the prediction ends where it does.
+    #[serde(default)]
+    pub reason: String,
     /// A remark for the reader.
     #[serde(default)]
     pub note: String,
     context: Option<String>,
+    not_comparable: Option<String>,
     missing: Option<String>,
     statistic: Option<String>,
     within: Option<[f64; 2]>,
@@ -100,7 +117,8 @@ impl Claim {
     /// The statistic to compare with the prediction, or else the verdict without one and its reason.
     pub(super) fn test(&self) -> std::result::Result<&Test, (Verdict, &str)> {
         let missing = (Verdict::NotAnswered, self.missing.as_deref().unwrap_or_default());
-        let without = self.context.as_deref().map_or(missing, |why| (Verdict::Context, why));
+        let unmet = self.not_comparable.as_deref().map_or(missing, |why| (Verdict::NotComparable, why));
+        let without = self.context.as_deref().map_or(unmet, |why| (Verdict::Context, why));
         self.test.as_ref().ok_or(without)
     }
 
@@ -108,11 +126,22 @@ impl Claim {
         self.expected.split(" or ")
     }
 
+    /// The time at which the claim was fixed, as `2026-01-31T12:00:00Z`.
+    pub(super) fn frozen_utc(&self) -> &str {
+        self.frozen.split(' ').next().unwrap_or_default()
+    }
+
     fn resolve(&mut self) -> Result<()> {
-        let kinds = [self.statistic.is_some(), self.context.is_some(), self.missing.is_some()];
-        if kinds.into_iter().filter(|is_there| *is_there).count() != 1 {
+        if !is_time(self.frozen_utc()) {
+            return Err(InputError::new("frozen", &self.frozen, "does not begin with a time")
+                .allowed("a time in UTC and perhaps a commit, for example 2026-01-31T12:00:00Z 0123abcd")
+                .into());
+        }
+        let without = [&self.context, &self.not_comparable, &self.missing];
+        let kinds = once(self.statistic.is_some()).chain(without.map(Option::is_some));
+        if kinds.filter(|is_there| *is_there).count() != 1 {
             return Err(InputError::new("id", self.id.to_string(), "has not exactly one kind of evidence")
-                .allowed("a statistic, a context or a missing")
+                .allowed("a statistic, a context, a not-comparable or a missing")
                 .into());
         }
         if !self.expected_verdicts().all(|name| NAMES.contains(&name)) {
@@ -144,6 +173,10 @@ impl Claim {
                 .allowed("between 0 and 1")
                 .into());
         }
+        if self.reason.is_empty() && !matches!(statistic, Statistic::Case(_)) {
+            let problem = "has a prediction, and no reason for its ends";
+            return Err(InputError::new("id", self.id.to_string(), problem).allowed("reason = \"...\"").into());
+        }
         let comparable_if = std::mem::take(&mut self.comparable_if);
         self.test = Some(Test { statistic, predicted, level, comparable_if, a_fortiori: self.a_fortiori });
         Ok(())
@@ -171,6 +204,13 @@ impl Report {
     pub fn all() -> Result<Vec<Self>> {
         experiment::claims().iter().map(|(name, text)| Self::from_text(&format!("claims/{name}.toml"), text)).collect()
     }
+}
+
+/// Whether a text is a time such as `2026-01-31T12:00:00Z`: such texts are in the order of their times.
+fn is_time(text: &str) -> bool {
+    const FORM: &[u8] = b"0000-00-00T00:00:00Z";
+    let fits = |(own, form): (u8, &u8)| if *form == b'0' { own.is_ascii_digit() } else { own == *form };
+    text.len() == FORM.len() && text.bytes().zip(FORM).all(fits)
 }
 
 /// Line and column of a field's value in the claim with this number.

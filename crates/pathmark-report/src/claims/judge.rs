@@ -1,11 +1,16 @@
 //! The judgement of claims by the results in some folders.
+//!
+//! Each folder is a run. Rows of all runs at the report's own size are measured together, and each run alone: a verdict stands only if
+//! every run alone has it, too. A run of one or two units is not judged alone. Folders are read in the order of their paths, so the order in which they are named changes nothing.
 
 use super::condition::{Columns, Conditions};
 use super::definition::{Claim, Report, Test};
-use super::measure::{Evidence, Measurement};
+use super::measure::{Evidence, Item, Query, measure};
+use super::measurement::Measurement;
 use super::statistic::{Cases, GuardColumn, GuardValue, Statistic};
 use super::verdict::Verdict;
 use crate::cases_file::{self, CaseRow};
+use crate::experiment::{MACHINE, read_run_file};
 use crate::guard_prices::{self, PriceRow, read_prices};
 use crate::lab::Lab;
 use crate::prelude::*;
@@ -19,17 +24,41 @@ pub struct Answer<'a> {
     pub verdict: Verdict,
     /// The reason for the verdict, beyond the measured values.
     pub why: String,
-    /// The file that the values come from, within the folders that were read.
-    pub source: Option<PathBuf>,
+    /// The files that the values come from.
+    pub sources: Vec<PathBuf>,
     pub(super) found: Option<Measurement>,
+    /// The verdicts of the runs alone; none for a run that is too short for one.
+    pub(super) runs: Vec<Option<Verdict>>,
+    /// How many more units would settle an open claim; if runs differ, in each run.
+    pub(super) to_settle: Option<usize>,
+    pub(super) age: Age,
+}
+
+/// Whether the claim was fixed before its rows were measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Age {
+    /// Before the first of them.
+    BoundFirst,
+    /// After at least one of them: its bound may have been chosen by them.
+    RowsFirst,
+    /// The rows do not tell their time.
+    Unknown,
 }
 
 impl Answer<'_> {
     /// Whether the verdict differs from those expected of a run at the report's own size. A verdict without comparable
     /// rows is never unexpected.
     pub fn is_unexpected(&self) -> bool {
-        let is_silent = matches!(self.verdict, Verdict::NotAnswered | Verdict::NotComparable);
-        !is_silent && !self.claim.expected_verdicts().any(|name| name == self.verdict.name())
+        self.is_judged() && !self.claim.expected_verdicts().any(|name| name == self.verdict.name())
+    }
+
+    /// Whether rows judge the claim that are not known to be younger than its bound.
+    pub fn is_bound_younger(&self) -> bool {
+        self.is_judged() && self.found.is_some() && self.age != Age::BoundFirst
+    }
+
+    fn is_judged(&self) -> bool {
+        !matches!(self.verdict, Verdict::NotAnswered | Verdict::NotComparable)
     }
 }
 
@@ -42,31 +71,109 @@ struct Library<'a> {
     prices: Vec<PriceRow>,
 }
 
-/// Judges every claim by the results in some folders. Of several answers the first with comparable rows counts, or else
-/// the first under other conditions.
+/// The part of a folder that answers a claim.
+struct Part<'a> {
+    source: PathBuf,
+    /// The measured value of this folder alone.
+    alone: Measurement,
+    /// The rows, if they can be measured together with those of other folders.
+    rows: Option<&'a Evidence>,
+    /// The conditions that differ from the report's; empty if the rows are comparable.
+    differences: Vec<String>,
+    /// The time at which the first row was measured, if all tell it.
+    started_utc: Option<String>,
+}
+
+/// Judges every claim by the results in some folders.
 pub fn judge<'a>(lab: &Arc<Lab>, reports: &'a [Report], folders: &[PathBuf]) -> Result<Vec<Answer<'a>>> {
-    let mut libraries = folders.iter().map(|out| Library::open(lab, out)).collect::<Result<Vec<_>>>()?;
+    // A folder that is named twice is one run.
+    let own_path = |folder: &PathBuf| folder.canonicalize().unwrap_or_else(|_| folder.clone());
+    let folders: BTreeMap<PathBuf, &PathBuf> = folders.iter().map(|folder| (own_path(folder), folder)).collect();
+    let mut libraries = folders.values().map(|out| Library::open(lab, out)).collect::<Result<Vec<_>>>()?;
     let claims = reports.iter().flat_map(|report| report.claims.iter().map(move |claim| (report, claim)));
     let mut answers = Vec::new();
     for (report, claim) in claims {
-        let answer =
-            |verdict, why: &str| Answer { report, claim, verdict, why: why.to_string(), source: None, found: None };
-        answers.push(match claim.test() {
-            Err((verdict, why)) => answer(verdict, why),
-            Ok(test) => {
-                let mut best = answer(Verdict::NotAnswered, "The results have no such rows.");
-                for library in &mut libraries {
-                    let found = library.answer(report, claim, test)?;
-                    if found.verdict.says() > best.verdict.says() {
-                        best = found;
-                    }
-                }
-                best
+        let without = |verdict, why: &str| {
+            let (why, sources, runs) = (why.to_string(), Vec::new(), Vec::new());
+            Answer { report, claim, verdict, why, sources, found: None, runs, to_settle: None, age: Age::Unknown }
+        };
+        let test = match claim.test() {
+            Err((verdict, why)) => {
+                answers.push(without(verdict, why));
+                continue;
             }
-        });
+            Ok(test) => test,
+        };
+        if let Statistic::OfRows { experiment, .. } = &test.statistic {
+            for library in &mut libraries {
+                library.load(experiment)?;
+            }
+        }
+        let parts =
+            libraries.iter().filter_map(|library| library.part(test).transpose()).collect::<Result<Vec<_>>>()?;
+        if parts.is_empty() {
+            answers.push(without(Verdict::NotAnswered, "The results have no such rows."));
+            continue;
+        }
+        let is_comparable = parts.iter().any(|part| part.differences.is_empty());
+        let parts: Vec<Part<'_>> =
+            parts.into_iter().filter(|part| part.differences.is_empty() == is_comparable).collect();
+        answers.push(verdict_of(&parts, without(Verdict::NotComparable, ""), test)?);
     }
     answers.sort_by_key(|answer| answer.claim.id);
     Ok(answers)
+}
+
+/// The answer of some runs: all at the report's own size, or none of them.
+fn verdict_of<'a>(parts: &[Part<'_>], blank: Answer<'a>, test: &Test) -> Result<Answer<'a>> {
+    let evidence: Option<Vec<&Evidence>> = parts.iter().map(|part| part.rows).collect();
+    let together = match (evidence, parts, &test.statistic) {
+        (Some(evidence), [_, _, ..], Statistic::OfRows { .. }) => {
+            query(test, parts[0].differences.is_empty()).map_or(Ok(None), |query| measure(&evidence, query))?
+        }
+        (_, [one], _) => Some(one.alone),
+        _ => Measurement::hull(&parts.iter().map(|part| part.alone).collect::<Vec<_>>()),
+    };
+    let Some(found) = together else { return Ok(blank) };
+    let mut differences: Vec<&str> = Vec::new();
+    for difference in parts.iter().flat_map(|part| &part.differences) {
+        if !differences.contains(&difference.as_str()) {
+            differences.push(difference);
+        }
+    }
+    let alone = |part: &Part<'_>| part.alone.stands_alone().then(|| Verdict::of(&part.alone, test.predicted));
+    let runs: Vec<Option<Verdict>> = parts.iter().map(alone).collect();
+    let all = Verdict::of(&found, test.predicted);
+    let agree = runs.iter().flatten().all(|run| *run == all);
+    let verdict = match all {
+        _ if !differences.is_empty() && !test.a_fortiori => Verdict::NotComparable,
+        all if agree => all,
+        _ => Verdict::Open,
+    };
+    let needed = |found: &Measurement| found.units_to_settle(test.predicted, test.level);
+    let of_runs = || parts.iter().filter(|part| alone(part) == Some(Verdict::Open));
+    let to_settle = match verdict {
+        Verdict::Open if agree => needed(&found),
+        Verdict::Open => {
+            of_runs().map(|part| needed(&part.alone)).collect::<Option<Vec<_>>>().and_then(|all| all.into_iter().max())
+        }
+        _ => None,
+    };
+    let started: Option<Vec<&String>> = parts.iter().map(|part| part.started_utc.as_ref()).collect();
+    let age = match started.and_then(|started| started.into_iter().min()) {
+        None => Age::Unknown,
+        Some(first) if first.as_str() < blank.claim.frozen_utc() => Age::RowsFirst,
+        Some(_) => Age::BoundFirst,
+    };
+    let sources = parts.iter().map(|part| part.source.clone()).collect();
+    Ok(Answer { verdict, why: differences.join("; "), sources, found: Some(found), runs, to_settle, age, ..blank })
+}
+
+/// The question of a test to rows: to those at the report's own size, or to all.
+fn query(test: &Test, is_comparable: bool) -> Option<Query<'_>> {
+    let Statistic::OfRows { rows, unit, kind, .. } = &test.statistic else { return None };
+    let also = Some(&test.comparable_if).filter(|_| is_comparable);
+    Some(Query { rows, also, kind, unit: *unit, level: test.level })
 }
 
 impl<'a> Library<'a> {
@@ -81,46 +188,61 @@ impl<'a> Library<'a> {
         })
     }
 
-    fn answer<'c>(&mut self, report: &'c Report, claim: &'c Claim, test: &Test) -> Result<Answer<'c>> {
-        let (found, source, differences) = match &test.statistic {
-            Statistic::OfRows { experiment, rows, kind } => {
-                let source = self.out.join(experiment).join("records.csv");
-                match self.experiment(experiment)? {
-                    None => (None, source, Vec::new()),
-                    Some(evidence) => {
-                        let found = evidence.measure(rows, kind, test.level)?;
-                        let own: Vec<&Columns> = evidence.rows(rows).into_iter().map(|(_, columns)| columns).collect();
-                        (found, source, differences(&test.comparable_if, &own))
-                    }
-                }
-            }
-            Statistic::Case(Cases { ids }) => {
-                (self.failed_cases(ids), self.out.join(cases_file::FOLDER).join(cases_file::FILE), Vec::new())
-            }
-            Statistic::Guard(GuardValue { guard, column }) => {
-                (self.price(guard, *column), self.out.join(guard_prices::FOLDER).join(guard_prices::FILE), Vec::new())
-            }
-        };
-        let conditions = differences.join("; ");
-        let (verdict, why) = match &found {
-            None => (Verdict::NotAnswered, "The results have no such rows.".to_string()),
-            Some(_) if !differences.is_empty() && !test.a_fortiori => (Verdict::NotComparable, conditions),
-            Some(found) => (Verdict::of(found, test.predicted), conditions),
-        };
-        Ok(Answer { report, claim, verdict, why, source: found.is_some().then_some(source), found })
-    }
-
-    fn experiment(&mut self, name: &str) -> Result<Option<&Evidence>> {
+    /// Reads an experiment, if the folder has it.
+    fn load(&mut self, name: &str) -> Result<()> {
         if !self.experiments.contains_key(name) {
             let folder = self.out.join(name);
-            let evidence = if folder.join("records.csv").is_file() {
-                Some(Evidence::of(Results::read(self.lab, self.out, &folder)?))
-            } else {
-                None
-            };
-            self.experiments.insert(name.to_string(), evidence);
+            let has_rows = folder.join("records.csv").is_file();
+            let results = has_rows.then(|| Results::read(self.lab, self.out, &folder)).transpose()?;
+            self.experiments.insert(name.to_string(), results.map(Evidence::of));
         }
-        Ok(self.experiments.get(name).and_then(Option::as_ref))
+        Ok(())
+    }
+
+    /// The part that answers a claim; `None` if there is none.
+    fn part(&self, test: &Test) -> Result<Option<Part<'_>>> {
+        let of_table = |found: Option<Measurement>, folder: &str, file: &str| {
+            let folder = self.out.join(folder);
+            found.map(|alone| Part {
+                source: folder.join(file),
+                alone,
+                rows: None,
+                differences: Vec::new(),
+                started_utc: started(&folder),
+            })
+        };
+        match &test.statistic {
+            Statistic::OfRows { experiment, rows, .. } => {
+                let Some(evidence) = self.experiments.get(experiment).and_then(Option::as_ref) else { return Ok(None) };
+                self.rows(evidence, experiment, rows, test)
+            }
+            Statistic::Case(Cases { ids }) => {
+                Ok(of_table(self.failed_cases(ids), cases_file::FOLDER, cases_file::FILE))
+            }
+            Statistic::Guard(GuardValue { guard, column }) => {
+                Ok(of_table(self.price(guard, *column), guard_prices::FOLDER, guard_prices::FILE))
+            }
+        }
+    }
+
+    /// The rows at the report's own size, or else all rows with the conditions in which they differ.
+    fn rows<'b>(&self, evidence: &'b Evidence, name: &str, rows: &Conditions, test: &Test) -> Result<Option<Part<'b>>> {
+        for is_comparable in [true, false] {
+            let Some(query) = query(test, is_comparable) else { break };
+            let Some(alone) = measure(&[evidence], query)? else { continue };
+            let own: Vec<_> = evidence.rows(rows).filter(|item| query.admits(item.columns)).collect();
+            let columns: Vec<&Columns> = own.iter().map(|item| item.columns).collect();
+            let started: Vec<&str> = own.iter().map(Item::started_utc).collect();
+            let first = started.iter().min().filter(|first| !first.is_empty());
+            return Ok(Some(Part {
+                source: self.out.join(name).join("records.csv"),
+                alone,
+                rows: Some(evidence),
+                differences: differences(&test.comparable_if, &columns),
+                started_utc: first.map(ToString::to_string),
+            }));
+        }
+        Ok(None)
     }
 
     /// The number of these hard cases that failed, if all of them were tried.
@@ -128,7 +250,7 @@ impl<'a> Library<'a> {
         let tried = ids.iter().map(|id| self.cases.iter().find(|case| case.id == *id && case.trials > 0));
         let tried = tried.collect::<Option<Vec<&CaseRow>>>()?;
         let failed = tried.iter().filter(|case| !case.pass).count() as f64;
-        Some(Measurement { value: failed, interval: Interval::between(failed, failed, 1.0), count: tried.len() })
+        Measurement::exact(failed, tried.len(), "case")
     }
 
     fn price(&self, guard: &str, column: GuardColumn) -> Option<Measurement> {
@@ -138,8 +260,13 @@ impl<'a> Library<'a> {
             GuardColumn::ErrorWithout => (row.error_without, row.error_without_low, row.error_without_high),
             GuardColumn::TimeRatio => (row.time_ratio?, row.time_ratio_low?, row.time_ratio_high?),
         };
-        Some(Measurement { value, interval: Interval::between(low, high, guard_prices::LEVEL), count: 1 })
+        Some(Measurement::of_table(value, Interval::between(low, high, guard_prices::LEVEL), 1, "price list"))
     }
+}
+
+/// The time at which the measurement of a folder began, if its file tells it.
+fn started(folder: &Path) -> Option<String> {
+    Some(read_run_file(&folder.join(MACHINE)).ok()?.started_utc).filter(|started| !started.is_empty())
 }
 
 /// The differences between the rows' conditions and the required ones, each once; if the size differs, also the ratio

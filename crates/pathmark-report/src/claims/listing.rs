@@ -1,13 +1,14 @@
 //! Lists of verdicts: files, which a run with fewer rows must not replace, and a section of the page.
 
 use super::definition::Report;
-use super::judge::Answer;
+use super::judge::{Age, Answer};
 use super::verdict::{NAMES, Verdict};
 use crate::atomic_file;
 use crate::block::Block;
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
 use crate::plot::number;
+use crate::prelude::{counted, joined};
 use crate::table::Table;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -26,19 +27,56 @@ const HEADING: &str = "# The claims of the four reports";
 impl Answer<'_> {
     /// The measured value with its interval.
     pub fn measured(&self) -> String {
-        let Some(found) = &self.found else { return "-".to_string() };
-        let short = |value: f64| number::short(value, 3);
-        match found.interval {
-            None => format!("{} (one value, no interval)", short(found.value)),
-            Some(interval) if interval.low == interval.high => short(found.value),
-            Some(interval) => format!("{} ({} to {})", short(found.value), short(interval.low), short(interval.high)),
+        self.found.map_or_else(|| "-".to_string(), |found| found.shown())
+    }
+
+    /// The rule that made value and interval, and the number of units.
+    pub fn rule(&self) -> String {
+        self.found.map_or_else(String::new, |found| found.rule_in_words())
+    }
+
+    /// How many runs alone have the verdict: `in 3 of 3 runs`; empty if no run was compared with the prediction.
+    pub fn in_runs(&self) -> String {
+        let of = |verdict: Verdict| self.runs.iter().filter(|run| **run == Some(verdict)).count();
+        let (all, judged) = (self.runs.len(), self.runs.iter().flatten().count());
+        match self.verdict {
+            Verdict::NotComparable | Verdict::NotAnswered | Verdict::Context => String::new(),
+            _ if judged == 0 => format!("over {}, none long enough alone", counted(all, "run")),
+            verdict if of(verdict) == judged => {
+                let short = all - judged;
+                let others = if short == 0 { String::new() } else { format!(", {short} too short alone") };
+                format!("in {judged} of {}{others}", counted(judged, "run"))
+            }
+            _ => {
+                let named = [Verdict::Confirmed, Verdict::Refuted, Verdict::Open].map(|verdict| (of(verdict), verdict));
+                let told = named.iter().filter(|(count, _)| *count > 0);
+                let told: Vec<String> = told.map(|(count, verdict)| format!("{verdict} in {count}")).collect();
+                format!("{} of {}", told.join(", "), counted(judged, "run"))
+            }
+        }
+    }
+
+    /// How many more units would settle an open claim; empty if it is settled or that cannot be told.
+    pub fn settled_by(&self) -> String {
+        let Some((units, found)) = self.to_settle.zip(self.found) else { return String::new() };
+        let each = if self.runs.iter().flatten().all(|run| *run == Verdict::Open) { "" } else { " in each open run" };
+        format!("about {}{each} would settle it", counted(units, &format!("more {}", found.noun)))
+    }
+
+    /// Whether the claim was fixed before its rows were measured.
+    pub fn age(&self) -> &'static str {
+        match self.age {
+            _ if self.found.is_none() => "",
+            Age::BoundFirst => "bound older than its rows",
+            Age::RowsFirst => "bound younger than its rows",
+            Age::Unknown => "rows without a time",
         }
     }
 
     /// The values that the report predicts.
     pub fn predicted(&self) -> String {
         let Ok(test) = self.claim.test() else { return "-".to_string() };
-        let short = |value: f64| number::short(value, 3);
+        let short = |value: f64| number::short(value, 6);
         match test.predicted {
             [low, high] if low == high => short(low),
             [low, f64::INFINITY] => format!("at least {}", short(low)),
@@ -50,6 +88,12 @@ impl Answer<'_> {
     /// The statistic in words.
     fn question(&self) -> String {
         self.claim.test().map_or_else(|_| String::new(), |test| test.statistic.to_string())
+    }
+
+    /// The files of its rows, as one text.
+    pub fn source(&self) -> Option<String> {
+        let sources: Vec<String> = self.sources.iter().map(|source| source.display().to_string()).collect();
+        Some(sources.join("; ")).filter(|sources| !sources.is_empty())
     }
 
     fn level(&self) -> Option<f64> {
@@ -76,8 +120,11 @@ pub fn save(answers: &[Answer<'_>], out: &Path) -> Result<()> {
 pub fn check_no_loss(option: &str, answers: &[Answer<'_>], out: &Path) -> Result<()> {
     for (path, read) in [(out.join(FOLDER).join(CSV), in_table as fn(&Path) -> Kept), (out.join(MARKDOWN), in_text)] {
         let kept = read(&path);
-        let is_lost =
-            |answer: &&Answer<'_>| kept.get(&answer.claim.id).is_some_and(|kept| kept.says() > answer.verdict.says());
+        // A claim that asks for no rows any more loses none.
+        let is_lost = |answer: &&Answer<'_>| {
+            let says_more = kept.get(&answer.claim.id).is_some_and(|kept| kept.says() > answer.verdict.says());
+            says_more && answer.claim.test().is_ok()
+        };
         let lost: Vec<String> = answers.iter().filter(is_lost).map(|answer| answer.claim.id.to_string()).collect();
         if !lost.is_empty() {
             let problem = format!("answers claims that these rows do not answer: {}", lost.join(", "));
@@ -133,9 +180,15 @@ fn table(stem: &'static str, answers: &[Answer<'_>]) -> Block {
         .column("low", |a| number(of(a).and_then(|found| Some(found.interval?.low))))
         .column("high", |a| number(of(a).and_then(|found| Some(found.interval?.high))))
         .column("level", |a| number(a.level()))
-        .column("values", |a| number(of(a).map(|found| found.count as f64)))
-        .column("source", |a| a.source.as_ref().map_or_else(String::new, |source| source.display().to_string()))
+        .column("values", |a| number(of(a).map(|found| found.units as f64)))
+        .column("source", |a| a.source().unwrap_or_default())
         .column("why", |a| a.why.clone())
+        .column("unit", |a| of(a).map_or_else(String::new, |found| found.noun.to_string()))
+        .column("rule", |a| a.rule())
+        .column("runs", |a| a.in_runs())
+        .column("to_settle", |a| number(a.to_settle.map(|units| units as f64)))
+        .column("frozen", |a| a.claim.frozen_utc().to_string())
+        .column("age", |a| a.age().to_string())
         .end()
 }
 
@@ -172,8 +225,8 @@ fn seen_from(folder: &Path, file: &Path) -> PathBuf {
 fn markdown(answers: &[Answer<'_>], base: &Path) -> String {
     let mut text = format!(
         "{HEADING}\n\n`pathmark claims` computed every verdict from the rows that it links to. A claim is *confirmed* if the whole interval lies within the values \
-         that the report predicts, *refuted* if it lies wholly outside, and *open* otherwise. It is *not comparable* if the rows were measured under other conditions, and *not answered* \
-         if there are no rows.\n\n",
+         that the report predicts, *refuted* if it lies wholly outside, and *open* otherwise. Each folder is a run; a claim whose runs differ is open. It is *not comparable* if the rows \
+         were measured under other conditions, and *not answered* if there are no rows.\n\n",
     );
     let _ = writeln!(text, "| report | {} |", NAMES.map(|name| name.replace('-', " ")).join(" | "));
     let _ = writeln!(text, "|--|{}", "--:|".repeat(NAMES.len()));
@@ -198,22 +251,27 @@ fn markdown(answers: &[Answer<'_>], base: &Path) -> String {
 fn entry(answer: &Answer<'_>, base: &Path) -> String {
     let claim = answer.claim;
     let mut text = format!("\n### {}. {}\n\n**{}**", claim.id, claim.claim, capital(answer.verdict));
+    for part in [answer.in_runs(), answer.settled_by()].iter().filter(|part| !part.is_empty()) {
+        let _ = write!(text, ", {part}");
+    }
     if !answer.why.is_empty() {
         let _ = write!(text, ": {}", answer.why);
     }
     let _ = write!(text, "\n\n> {} ({})\n\n- Reported: {}\n", claim.quote, claim.place, claim.reported);
-    if let Some(source) = &answer.source {
-        let shown = seen_from(base, source).display().to_string();
-        let count = answer.found.map_or(0, |found| found.count);
-        let level = answer.level().filter(|level| *level < 1.0);
-        let level = level.map_or_else(String::new, |level| format!(", {:.1} %", 100.0 * level));
-        let _ = writeln!(
-            text,
-            "- Measured: {}{level}; {}; {count} values, [{shown}]({shown})\n- Predicted: {}",
-            answer.measured(),
-            answer.question(),
-            answer.predicted()
-        );
+    if let Some(found) = &answer.found {
+        let shown = answer.sources.iter().map(|source| seen_from(base, source).display().to_string());
+        let links: Vec<String> = shown.map(|shown| format!("[{shown}]({shown})")).collect();
+        let level = Some(found.confidence()).filter(|level| !level.is_empty());
+        let level = level.map_or_else(String::new, |level| format!(", {level}"));
+        let (measured, rule, question) = (found.shown(), found.rule_in_words(), answer.question());
+        let _ = writeln!(text, "- Measured: {measured}{level}; {question}; {rule}; {}", links.join(", "));
+        let reason = Some(claim.reason.trim()).filter(|reason| !reason.is_empty());
+        let reason = reason.map_or_else(String::new, |reason| format!(". {reason}"));
+        let _ = writeln!(text, "- Predicted: {}{reason}", answer.predicted());
+        let _ = writeln!(text, "- Fixed at {}: {}", claim.frozen_utc(), answer.age());
+    }
+    if !claim.changed.is_empty() {
+        let _ = writeln!(text, "- Changed: {}", claim.changed.trim());
     }
     if !claim.note.is_empty() {
         let _ = writeln!(text, "- {}", claim.note.trim());
@@ -257,12 +315,13 @@ pub(crate) fn blocks(answers: &[Answer<'_>]) -> Vec<Block> {
         blocks.push(
             Block::table(stem, title, own)
                 .column("claim", |a| format!("{}. {}", a.claim.id, a.claim.claim))
-                .column("verdict", |a| a.verdict.to_string())
+                .column("verdict", |a| joined([a.verdict.to_string(), a.in_runs(), a.settled_by()]))
                 .column("measured", |a| a.measured())
                 .column("predicted", |a| a.predicted())
                 .column("the report says", |a| format!("\u{201c}{}\u{201d}", a.claim.quote))
                 .column("reported", |a| a.claim.reported.clone())
-                .column("conditions", |a| a.why.clone())
+                .column("interval", |a| a.rule())
+                .column("conditions", |a| joined([a.why.clone(), a.age().to_string()]))
                 .end(),
         );
     }

@@ -1,14 +1,16 @@
 //! Statistics of rows, with their intervals.
 
 use super::condition::{Columns, Conditions, columns, number, text};
-use super::statistic::{ForecastColumn, Kind};
+use super::measurement::{Measurement, Rule, Scale};
+use super::statistic::{ForecastColumn, Kind, Unit};
 use crate::analysis::fit::log_log;
 use crate::analysis::jackknife::SeedCurves;
-use crate::analysis::mean::{Moments, geometric_interval, t_interval};
+use crate::analysis::mean::mean_ratio;
 use crate::analysis::rank::spearman;
+use crate::analysis::ranking::Turn;
 use crate::analysis::slope::power_law;
 use crate::analysis::speedup::serial_fraction;
-use crate::analysis::z_test::{critical_value, z_score};
+use crate::analysis::z_test::critical_value;
 use crate::contenders::{curves_of_seeds, one_per_seed};
 use crate::error::InputError;
 use crate::experiment::read_calibration;
@@ -18,46 +20,36 @@ use crate::prelude::*;
 use crate::simulate::{Contender, Hardware, contenders, forecast};
 use std::collections::HashMap;
 
-/// A value, its interval if there were enough values for one, and the number of values that the interval is computed from.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Measurement {
-    pub(super) value: f64,
-    pub(super) interval: Option<Interval>,
-    pub(super) count: usize,
-}
-
-impl Measurement {
-    fn estimate(estimate: Option<Estimate>, count: usize) -> Option<Self> {
-        let Estimate { value, interval } = estimate?;
-        Some(Self { value, interval: Some(interval), count })
-    }
-
-    /// A counted value, which has no error.
-    fn exact(value: f64, count: usize) -> Option<Self> {
-        (count > 0).then(|| Self { value, interval: Interval::between(value, value, 1.0), count })
-    }
-
-    /// The median of some values. If they are too few for the level, `of_few` gives the interval; a single value has
-    /// none.
-    fn typical(
-        values: &[f64],
-        stopping: Stopping,
-        level: f64,
-        of_few: fn(&[f64], f64) -> Option<Estimate>,
-    ) -> Option<Self> {
-        let enough = stopping.median_interval(values, level).filter(|interval| interval.level >= level);
-        let interval = enough.or_else(|| Some(of_few(values, level)?.interval));
-        Some(Self { value: median(values)?, interval, count: values.len() })
-    }
-}
-
-/// An experiment's rows with their columns.
+/// An experiment's rows in one folder with their columns: all runs of each process.
 pub(super) struct Evidence {
     results: Results,
     columns: Vec<Columns>,
 }
 
-type Pair<'a> = (&'a Row, &'a Columns);
+/// A row of a folder, by the folder's place among those that are measured together.
+#[derive(Clone, Copy)]
+pub(super) struct Item<'a> {
+    run: usize,
+    row: &'a Row,
+    pub(super) columns: &'a Columns,
+}
+
+/// The question of a claim to rows.
+#[derive(Clone, Copy)]
+pub(super) struct Query<'a> {
+    pub(super) rows: &'a Conditions,
+    /// Conditions that the rows have to meet, too.
+    pub(super) also: Option<&'a Conditions>,
+    pub(super) kind: &'a Kind,
+    pub(super) unit: Unit,
+    pub(super) level: f64,
+}
+
+/// With so many runs, the runs are the independent units: then the extremes of their medians enclose the typical value.
+const ENOUGH_RUNS: usize = 6;
+
+/// An independent unit. Images do not depend on the run, so seeds and scenes of several runs are the same units.
+type Key = (Option<usize>, String);
 
 /// Columns that may change with another one: rows that differ in it may differ in these, too.
 const FOLLOWERS: [(&str, &[&str]); 5] = [
@@ -68,88 +60,46 @@ const FOLLOWERS: [(&str, &[&str]); 5] = [
     ("sampler", &["kernel", "kernel_fallback", "simd", "effects"]),
 ];
 
+impl Unit {
+    fn key(self, item: Item<'_>) -> Key {
+        let Item { run, row, .. } = item;
+        match self {
+            Self::Repetition => (Some(run), format!("{:06} {:06}", row.seed, row.repetition)),
+            Self::Seed => (None, row.seed.to_string()),
+            Self::Scene => (None, row.scene.clone()),
+        }
+    }
+
+    fn noun(self) -> &'static str {
+        match self {
+            Self::Repetition => "repetition",
+            Self::Seed => "seed",
+            Self::Scene => "scene",
+        }
+    }
+}
+
 impl Evidence {
     pub(super) fn of(results: Results) -> Self {
-        let columns = results.rows().map(|row| columns(row.as_written())).collect();
+        let columns = results.rows().flat_map(Row::runs).map(|row| columns(row.as_written())).collect();
         Self { results, columns }
     }
 
+    fn items(&self, run: usize) -> impl Iterator<Item = Item<'_>> {
+        let rows = self.results.rows().flat_map(Row::runs).zip(&self.columns);
+        rows.map(move |(row, columns)| Item { run, row, columns })
+    }
+
     /// The rows that meet some conditions.
-    pub(super) fn rows<'a>(&'a self, conditions: &'a Conditions) -> Vec<Pair<'a>> {
-        self.results.rows().zip(&self.columns).filter(|(_, columns)| conditions.admit(columns)).collect()
+    pub(super) fn rows<'a>(&'a self, conditions: &'a Conditions) -> impl Iterator<Item = Item<'a>> {
+        self.items(0).filter(|item| conditions.admit(item.columns))
     }
 
-    /// The statistic of the rows that meet the conditions; `None` if there are no such rows, or too few to compute it.
-    pub(super) fn measure(&self, conditions: &Conditions, kind: &Kind, level: f64) -> Result<Option<Measurement>> {
-        let (rows, stopping) = (self.rows(conditions), self.results.stopping());
-        let of = |column: &str| -> Vec<f64> { rows.iter().filter_map(|(_, row)| number(row, column)).collect() };
-        let per = |above: &str, below: &str| -> Vec<f64> {
-            let ratio =
-                |row: &Columns| Some(number(row, above)? / number(row, below)?).filter(|ratio| ratio.is_finite());
-            rows.iter().filter_map(|(_, row)| ratio(row)).collect()
-        };
-        Ok(match kind {
-            Kind::Value { column, per: None } => Measurement::typical(&of(column), stopping, level, t_interval),
-            Kind::Value { column, per: Some(below) } => {
-                Measurement::typical(&per(column, below), stopping, level, t_interval)
-            }
-            Kind::Share { column, of } => share(&per(column, of), level),
-            Kind::Count { column } => Measurement::exact(of(column).iter().sum(), of(column).len()),
-            Kind::PairedRatio { column, over } => Measurement::typical(
-                &self.ratios(&rows, conditions, over, column)?,
-                stopping,
-                level,
-                geometric_interval,
-            ),
-            Kind::Speedup { over } => {
-                let ratios = self.ratios(&rows, conditions, over, "makespan_s")?;
-                let speedups: Vec<f64> = ratios.iter().map(|ratio| 1.0 / ratio).collect();
-                Measurement::typical(&speedups, stopping, level, geometric_interval)
-            }
-            Kind::Exponent { x, y } => {
-                let points = rows.iter().filter_map(|(_, row)| Some((number(row, x)?, number(row, y)?)));
-                let points: Vec<(f64, f64)> = points.collect();
-                Measurement::estimate(log_log(&points, level).map(|line| line.slope), points.len())
-            }
-            Kind::RmseSlope {} => {
-                let own: Vec<&Row> = rows.iter().map(|(row, _)| *row).collect();
-                let curves: Vec<_> = curves_of_seeds(&own).into_iter().map(|(curve, _)| curve).collect();
-                let law = SeedCurves::of_errors(&curves).and_then(|curves| power_law(&curves, level));
-                Measurement::estimate(law.map(|law| law.exponent), curves.len())
-            }
-            Kind::Z { column, over } => z(&rows, &self.rows(over), column, level),
-            Kind::RankCorrelation { x, y, by } => rank_correlation(&rows, [x, y], by, level),
-            Kind::Checksum {} => checksums(&rows),
-            Kind::Forecast { strategy, cores, column } => self.forecast(&rows, (strategy, *cores), *column, level)?,
-        })
-    }
-
-    /// Ratios of a column between rows and their partners in `over`. Partners may differ only in columns that the
-    /// conditions name, and in those that change with them.
-    fn ratios(&self, rows: &[Pair<'_>], own: &Conditions, over: &Conditions, column: &str) -> Result<Vec<f64>> {
-        let named: BTreeSet<&str> = own.columns().chain(over.columns()).collect();
-        let followers = FOLLOWERS.iter().filter(|(column, _)| named.contains(column)).flat_map(|(_, others)| *others);
-        let free: BTreeSet<&str> = named.iter().copied().chain(followers.copied()).collect();
-        let identity: Vec<&str> =
-            image_columns().chain(schedule_columns()).filter(|column| !free.contains(column)).collect();
-        let key = |row: &Row, columns: &Columns| {
-            (identity.iter().map(|column| text(columns, column)).collect::<Vec<String>>(), row.repetition)
-        };
-        let of_two = |(row, _): Pair<'_>, (other, _): Pair<'_>| {
-            let problem = format!("cannot be told from {} by the claim that compares with it", other.cell);
-            InputError::new("cell", &row.cell, problem)
-        };
-        let keyed = |pair: &Pair<'_>| key(pair.0, pair.1);
-        let (above, below) = (rows.iter().map(|pair| (keyed(pair), *pair)), self.rows(over));
-        let below = below.into_iter().map(|pair| (keyed(&pair), pair));
-        let ratios = ratios_by(above, below, of_two, |(_, columns)| number(columns, column))?;
-        Ok(ratios.into_iter().filter(|ratio| ratio.is_finite() && *ratio > 0.0).collect())
-    }
-
-    /// The statistic of simulated schedules, from the traced jobs of serial rows.
+    /// The statistic of simulated schedules, from the traced jobs of serial rows. Its interval contains the differences
+    /// between these runs and those between the calibrations of the folder.
     fn forecast(
         &self,
-        rows: &[Pair<'_>],
+        rows: &[&Row],
         (strategy, cores): (&str, usize),
         column: ForecastColumn,
         level: f64,
@@ -161,55 +111,217 @@ impl Evidence {
         let mut known = contenders(&self.results.definition.lab, &read_calibration(&path)?);
         known.push(Contender::longest_first());
         known.retain(|contender| contender.name == strategy);
-        let mut values = Vec::new();
-        for (row, _) in rows.iter().filter(|(row, _)| row.schedule.is_serial()) {
-            let Some(trace) = self.results.trace(row)? else { continue };
-            for told in forecast(&trace.costs_s(), &known, &[cores], &Hardware::default()) {
-                values.extend(match column {
-                    ForecastColumn::Speedup => Some(told.speedup),
-                    ForecastColumn::Efficiency => Some(told.efficiency),
-                    ForecastColumn::SerialFraction => serial_fraction(told.speedup, cores),
-                });
+        let mut traces = Vec::new();
+        for row in rows.iter().filter(|row| row.schedule.is_serial()) {
+            traces.extend(self.results.trace(row)?.map(|trace| trace.costs_s()));
+        }
+        let told = forecast(&traces, &known, &[cores], &Hardware::default(), level);
+        let Some(told) = told.first() else { return Ok(None) };
+        let value = match column {
+            ForecastColumn::Speedup => Some(told.speedup),
+            ForecastColumn::Efficiency => told.efficiency(),
+            ForecastColumn::SerialFraction => told.speedup.through(|speedup| serial_fraction(speedup, cores)),
+        };
+        Ok(value.map(|told| Measurement::of_table(told.value, told.interval, traces.len(), "trace")))
+    }
+}
+
+impl Item<'_> {
+    pub(super) fn started_utc(&self) -> &str {
+        &self.row.started_utc
+    }
+}
+
+/// Rows of one or several runs of an experiment.
+struct Rows<'a> {
+    runs: &'a [&'a Evidence],
+    query: Query<'a>,
+    own: Vec<Item<'a>>,
+    stopping: Stopping,
+}
+
+/// The statistic of the rows of some runs together; `None` if there are no such rows, or too few to compute it.
+pub(super) fn measure(runs: &[&Evidence], query: Query<'_>) -> Result<Option<Measurement>> {
+    let is_sequential = runs.iter().any(|run| run.results.stopping() == Stopping::Sequential);
+    let stopping = if is_sequential { Stopping::Sequential } else { Stopping::Fixed };
+    let own = items(runs).filter(|item| query.admits(item.columns)).collect();
+    Rows { runs, query, own, stopping }.measure()
+}
+
+fn items<'a>(runs: &'a [&'a Evidence]) -> impl Iterator<Item = Item<'a>> {
+    runs.iter().enumerate().flat_map(|(run, evidence)| evidence.items(run))
+}
+
+impl Query<'_> {
+    pub(super) fn admits(&self, row: &Columns) -> bool {
+        self.rows.admit(row) && self.also.is_none_or(|also| also.admit(row))
+    }
+}
+
+impl<'a> Rows<'a> {
+    fn measure(&self) -> Result<Option<Measurement>> {
+        let Query { kind, level, .. } = self.query;
+        let own = &self.own;
+        let found = match kind {
+            Kind::Value { column, plus, per } => {
+                let value = |item: &Item<'_>| {
+                    let more = plus.as_ref().map_or(Some(0.0), |plus| number(item.columns, plus));
+                    let sum = number(item.columns, column)? + more?;
+                    let below = per.as_ref().map_or(Some(1.0), |per| number(item.columns, per))?;
+                    Some(sum / below).filter(|value| value.is_finite())
+                };
+                self.typical(own.iter().filter_map(|item| Some((*item, value(item)?))), Scale::Linear)
+            }
+            Kind::Count { column } => {
+                let counts: Vec<f64> = own.iter().filter_map(|item| number(item.columns, column)).collect();
+                Measurement::exact(counts.iter().sum(), counts.len(), "row")
+            }
+            Kind::PairedRatio { column, over } => self.typical(self.ratios(over, column)?, Scale::Logarithmic),
+            Kind::Speedup { over, column } => {
+                let column = column.as_ref().map_or("makespan_s", |column| column);
+                let ratios = self.ratios(over, column)?.into_iter();
+                self.typical(ratios.map(|(item, ratio)| (item, 1.0 / ratio)), Scale::Logarithmic)
+            }
+            Kind::Exponent { x, y } => self.exponent(x, y),
+            Kind::RmseSlope {} => {
+                let own: Vec<&Row> = own.iter().map(|item| item.row).collect();
+                let curves: Vec<_> = curves_of_seeds(&own).into_iter().map(|(curve, _)| curve).collect();
+                let law = SeedCurves::of_errors(&curves).and_then(|curves| power_law(&curves, level));
+                Measurement::estimate(law.map(|law| law.exponent), Rule::Jackknife, curves.len(), "seed")
+            }
+            Kind::MeanRatio { column, over } => {
+                let over: Vec<Item<'_>> = items(self.runs).filter(|item| over.admit(item.columns)).collect();
+                let [above, below] = [own, &over].map(|items| per_seed(items, column));
+                let units = above.len() + below.len();
+                Measurement::estimate(mean_ratio(&above, &below, level), Rule::Welch, units, Unit::Seed.noun())
+            }
+            Kind::RankCorrelation { x, y, by } => rank_correlation(own, [x, y], by, level),
+            Kind::Checksum {} => checksums(own),
+            Kind::Forecast { strategy, cores, column } => {
+                let of_run = |(run, evidence): (usize, &&Evidence)| {
+                    let rows: Vec<&Row> = own.iter().filter(|item| item.run == run).map(|item| item.row).collect();
+                    evidence.forecast(&rows, (strategy, *cores), *column, level).transpose()
+                };
+                let found = self.runs.iter().enumerate().filter_map(of_run).collect::<Result<Vec<_>>>()?;
+                if let [one] = found.as_slice() { Some(*one) } else { Measurement::hull(&found) }
+            }
+        };
+        Ok(found)
+    }
+
+    /// The typical value of units: each has the mean over its cells of the median of the cell's pairs.
+    fn typical(&self, values: impl IntoIterator<Item = (Item<'a>, f64)>, scale: Scale) -> Option<Measurement> {
+        let Query { unit, level, .. } = self.query;
+        let mut units: BTreeMap<Key, BTreeMap<(usize, &str), Vec<f64>>> = BTreeMap::new();
+        for (item, value) in values {
+            let cell = (if unit == Unit::Repetition { item.run } else { 0 }, item.row.cell.as_str());
+            units.entry(unit.key(item)).or_default().entry(cell).or_default().push(value);
+        }
+        let of_unit = |cells: &BTreeMap<_, Vec<f64>>| {
+            scale.mean(&cells.values().filter_map(|values| median(values)).collect::<Vec<f64>>())
+        };
+        let mut runs: BTreeMap<Option<usize>, Vec<f64>> = BTreeMap::new();
+        for ((run, _), cells) in &units {
+            runs.entry(*run).or_default().extend(of_unit(cells));
+        }
+        if runs.len() >= ENOUGH_RUNS {
+            let values: Vec<f64> = runs.values().filter_map(|values| scale.mean(values)).collect();
+            return Measurement::typical(&values, scale, self.stopping, level, "run");
+        }
+        let values: Vec<f64> = runs.into_values().flatten().collect();
+        Measurement::typical(&values, scale, self.stopping, level, unit.noun())
+    }
+
+    /// Ratios of a column between rows and their partners in `over`, in the same run and the same pair of one process; if no
+    /// rows are of pairs, or those of other cells, in the same repetition. Partners may differ only in columns that the
+    /// conditions name, and in those that change with them.
+    fn ratios(&self, over: &Conditions, column: &str) -> Result<Vec<(Item<'a>, f64)>> {
+        let identity = identity(self.query.rows, over);
+        let key = |item: &Item<'_>, turn: Turn| {
+            (item.run, identity.iter().map(|column| text(item.columns, column)).collect::<Vec<String>>(), turn)
+        };
+        let of_two = |(item, _): (Item<'_>, f64), (other, _): (Item<'_>, f64)| {
+            let problem = format!("cannot be told from {} by the claim that compares with it", other.row.cell);
+            InputError::new("cell", &item.row.cell, problem)
+        };
+        let below: Vec<Item<'_>> = items(self.runs).filter(|item| over.admit(item.columns)).collect();
+        let mut found = Vec::new();
+        for keeps_pairs in [true, false] {
+            let [above, below] = [&self.own, &below].map(|items| {
+                let values = per_turn(items, column, keeps_pairs).into_iter();
+                values.map(|(turn, item, value)| (key(&item, turn), (item, value))).collect::<Vec<_>>()
+            });
+            found = ratios_by(above, below, of_two, |(_, value)| Some(value))?;
+            if !found.is_empty() {
+                break;
             }
         }
-        Ok(Measurement::typical(&values, self.results.stopping(), level, t_interval))
+        let ratios = found.into_iter().map(|((item, _), ratio)| (item, ratio));
+        Ok(ratios.filter(|(_, ratio)| ratio.is_finite() && *ratio > 0.0).collect())
     }
-}
 
-/// The mean of some shares; if all are equal, that share exactly.
-fn share(shares: &[f64], level: f64) -> Option<Measurement> {
-    let first = *shares.first()?;
-    if shares.len() > 1 && shares.iter().all(|share| *share == first) {
-        return Measurement::exact(first, shares.len());
-    }
-    let mean = shares.iter().sum::<f64>() / shares.len() as f64;
-    let interval = t_interval(shares, level).map(|estimate| estimate.interval);
-    Some(Measurement { value: mean, interval, count: shares.len() })
-}
-
-/// The difference of two means over seeds in standard errors, plus or minus the normal quantile of the level.
-fn z(rows: &[Pair<'_>], over: &[Pair<'_>], column: &str, level: f64) -> Option<Measurement> {
-    let moments = |pairs: &[Pair<'_>]| {
-        let own: Vec<&Row> = pairs.iter().map(|(row, _)| *row).collect();
-        let by_row: HashMap<*const Row, f64> = pairs
-            .iter()
-            .filter_map(|(row, columns)| Some((std::ptr::from_ref(*row), number(columns, column)?)))
+    /// The exponent of y against x: of a line through all processes, each a point; for units other than repetitions the
+    /// typical exponent of the units' own lines.
+    fn exponent(&self, x: &str, y: &str) -> Option<Measurement> {
+        let Query { unit, level, .. } = self.query;
+        let xs: HashMap<*const Columns, f64> = (self.own.iter())
+            .filter_map(|item| Some((std::ptr::from_ref(item.columns), number(item.columns, x)?)))
             .collect();
-        Moments::of(&one_per_seed(&own, |row| by_row.get(&std::ptr::from_ref(row)).copied()))
+        let points = per_turn(&self.own, y, false).into_iter();
+        let points = points.filter_map(|(_, item, y)| Some((item, *xs.get(&std::ptr::from_ref(item.columns))?, y)));
+        let points: Vec<(Item<'_>, f64, f64)> = points.filter(|(_, x, y)| *x > 0.0 && *y > 0.0).collect();
+        if unit == Unit::Repetition {
+            let points: Vec<(f64, f64)> = points.iter().map(|(_, x, y)| (*x, *y)).collect();
+            let line = log_log(&points, level).map(|line| line.slope);
+            return Measurement::estimate(line, Rule::Line, points.len(), "point");
+        }
+        let lines = gathered(points.iter().map(|(item, x, y)| (unit.key(*item), (*x, *y))));
+        let slopes = lines.values().filter_map(|points| Some(log_log(points, level)?.slope.value));
+        Measurement::typical(&slopes.collect::<Vec<f64>>(), Scale::Linear, self.stopping, level, unit.noun())
+    }
+}
+
+/// The columns that partners share: those of image and schedule that the conditions leave alone.
+pub(super) fn identity(rows: &Conditions, over: &Conditions) -> Vec<&'static str> {
+    let named: BTreeSet<&str> = rows.columns().chain(over.columns()).collect();
+    let followers = FOLLOWERS.iter().filter(|(column, _)| named.contains(column)).flat_map(|(_, others)| *others);
+    let free: BTreeSet<&str> = named.iter().copied().chain(followers.copied()).collect();
+    image_columns().chain(schedule_columns()).filter(|column| !free.contains(column)).collect()
+}
+
+/// A run, a cell and a turn.
+type Place<'a> = (usize, &'a str, Turn);
+
+type Valued<'a> = (Item<'a>, f64);
+
+/// The values of rows by repetition and pair, or the median of each cell's pairs by repetition, with one of their rows.
+fn per_turn<'a>(items: &[Item<'a>], column: &str, keeps_pairs: bool) -> Vec<(Turn, Item<'a>, f64)> {
+    let place = |item: &Item<'a>| {
+        let Item { run, row, .. } = *item;
+        (run, row.cell.as_str(), (row.repetition, row.pair.filter(|_| keeps_pairs)))
     };
-    let (a, b) = (moments(rows), moments(over));
-    let score = z_score(a.mean()?, a.standard_error()?, b.mean()?, b.standard_error()?)?;
-    let interval = Interval::around(score, critical_value(1.0 - level)?, level);
-    Some(Measurement { value: score, interval, count: (a.count() + b.count()) as usize })
+    let valued = items.iter().filter_map(|item| Some((place(item), (*item, number(item.columns, column)?))));
+    let of_turn = |((_, _, turn), all): (Place<'_>, Vec<Valued<'a>>)| {
+        Some((turn, all.first()?.0, median(&all.iter().map(|(_, value)| *value).collect::<Vec<f64>>())?))
+    };
+    gathered(valued).into_iter().filter_map(of_turn).collect()
+}
+
+/// The mean of a column over the images of each seed.
+fn per_seed(items: &[Item<'_>], column: &str) -> Vec<f64> {
+    let own: Vec<&Row> = items.iter().map(|item| item.row).collect();
+    let by_row: HashMap<*const Row, f64> =
+        items.iter().filter_map(|item| Some((std::ptr::from_ref(item.row), number(item.columns, column)?))).collect();
+    one_per_seed(&own, |row| by_row.get(&std::ptr::from_ref(row)).copied())
 }
 
 /// Spearman's coefficient over the means of groups, with Fisher's interval. The variance for ranks is from E. C.
 /// Fieller, H. O. Hartley and E. S. Pearson, "Tests for rank correlation coefficients", Biometrika 44 (1957).
-fn rank_correlation(rows: &[Pair<'_>], [x, y]: [&str; 2], by: &str, level: f64) -> Option<Measurement> {
+fn rank_correlation(items: &[Item<'_>], [x, y]: [&str; 2], by: &str, level: f64) -> Option<Measurement> {
     let mut groups: BTreeMap<String, Vec<(f64, f64)>> = BTreeMap::new();
-    for (_, row) in rows {
-        if let Some(pair) = number(row, x).zip(number(row, y)) {
-            groups.entry(text(row, by)).or_default().push(pair);
+    for Item { columns, .. } in items {
+        if let Some(pair) = number(columns, x).zip(number(columns, y)) {
+            groups.entry(text(columns, by)).or_default().push(pair);
         }
     }
     let mean = |pairs: &Vec<(f64, f64)>| {
@@ -223,17 +335,18 @@ fn rank_correlation(rows: &[Pair<'_>], [x, y]: [&str; 2], by: &str, level: f64) 
     // A perfect order has an infinite transform, so rho is clamped.
     let centre = libm::atanh(rho.clamp(-0.999_999, 0.999_999));
     let interval = Interval::between(libm::tanh(centre - half), libm::tanh(centre + half), level);
-    Some(Measurement { value: rho, interval, count: points.len() })
+    let estimate = interval.map(|interval| Estimate { value: rho, interval });
+    Measurement::estimate(estimate, Rule::Ranks, points.len(), if by == "scene" { "scene" } else { "group" })
 }
 
 /// The largest number of different checksums of one image; `None` if no image has two rows.
-fn checksums(rows: &[Pair<'_>]) -> Option<Measurement> {
+fn checksums(items: &[Item<'_>]) -> Option<Measurement> {
     let mut images: BTreeMap<_, Vec<&str>> = BTreeMap::new();
-    // A sampler that draws other random numbers in each run leaves no checksum.
-    for (row, _) in rows.iter().filter(|(row, _)| !row.checksum.is_empty()) {
-        images.entry(&row.image).or_default().push(&row.checksum);
+    // A sampler that draws other random numbers in each run leaves no checksum. Runs of two revisions may differ.
+    for Item { run, row, .. } in items.iter().filter(|item| !item.row.checksum.is_empty()) {
+        images.entry((*run, &row.image)).or_default().push(&row.checksum);
     }
     let compared: Vec<&Vec<&str>> = images.values().filter(|checksums| checksums.len() > 1).collect();
     let most = compared.iter().map(|sums| sums.iter().collect::<BTreeSet<_>>().len()).max()?;
-    Measurement::exact(most as f64, compared.iter().map(|sums| sums.len()).sum())
+    Measurement::exact(most as f64, compared.len(), "image")
 }

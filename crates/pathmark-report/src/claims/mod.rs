@@ -8,6 +8,7 @@ mod definition;
 mod judge;
 mod listing;
 mod measure;
+mod measurement;
 mod statistic;
 #[cfg(test)]
 mod tests;
@@ -27,14 +28,14 @@ use std::sync::Arc;
 const QUESTION: &str = "What did the four reports claim, and what do the rows of this folder say about it?";
 
 const ANALYSIS: &str = "Each claim names the rows that answer it, a statistic, and the values that the report predicts for that statistic. A claim is confirmed if the whole interval of \
-the measurement lies within the prediction, refuted if it lies wholly outside, and open otherwise. It is not comparable if the rows were measured under other conditions than the report's, \
+the measurement lies within the prediction, refuted if it lies wholly outside, and open otherwise, also if runs differ. It is not comparable if the rows were measured under other conditions than the report's, \
 and not answered if there are no rows.";
 
 /// The verdicts as the first section of the page, if the folder has rows for any of them.
 pub(super) fn section(lab: &Arc<Lab>, out: &Path) -> Result<Option<Section>> {
     let reports = Report::all()?;
     let answers = judge(lab, &reports, &[out.to_path_buf()])?;
-    let answered = answers.iter().filter(|answer| answer.source.is_some()).count();
+    let answered = answers.iter().filter(|answer| !answer.sources.is_empty()).count();
     if answered == 0 {
         return Ok(None);
     }

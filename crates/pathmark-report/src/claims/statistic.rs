@@ -11,7 +11,7 @@ use toml::{Table, Value};
 #[derive(Debug)]
 pub(super) enum Statistic {
     /// A statistic of the rows of an experiment.
-    OfRows { experiment: String, rows: Conditions, kind: Kind },
+    OfRows { experiment: String, rows: Conditions, unit: Unit, kind: Kind },
     /// The number of some hard cases that failed.
     Case(Cases),
     /// A value in the price list of the guards.
@@ -22,28 +22,41 @@ pub(super) enum Statistic {
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub(super) enum Kind {
-    /// The median of a column, or of one column divided by another.
-    Value { column: Column, per: Option<Column> },
-    /// The mean over rows of a column's share of another.
-    Share { column: Column, of: Column },
+    /// A column, or the sum of two, perhaps divided by another.
+    Value { column: Column, plus: Option<Column>, per: Option<Column> },
     /// The sum of a column.
     Count { column: Column },
-    /// The median ratio of a column between paired rows.
+    /// The ratio of a column between paired rows.
     PairedRatio { column: Column, over: Conditions },
-    /// The median of the baseline's time over the rows' own, in pairs.
-    Speedup { over: Conditions },
+    /// The baseline's time over the rows' own, in pairs: of the makespan, or of another column of seconds.
+    Speedup { over: Conditions, column: Option<Column> },
     /// The slope of log y against log x.
     Exponent { x: Column, y: Column },
     /// The slope of log RMSE against log spp, with an interval over seeds.
     RmseSlope {},
-    /// The difference of two means over seeds, in standard errors.
-    Z { column: Column, over: Conditions },
+    /// The ratio of two means over seeds. The claim that they are equal is confirmed if both one-sided tests reject a ratio
+    /// beyond the margin (see `mean_ratio`).
+    MeanRatio { column: Column, over: Conditions },
     /// Spearman's rank correlation of two columns, each averaged within groups.
     RankCorrelation { x: Column, y: Column, by: Column },
     /// The largest number of different checksums of one image.
     Checksum {},
     /// A simulated schedule on many cores.
     Forecast { strategy: String, cores: usize, column: ForecastColumn },
+}
+
+/// The independent units of a statistic: all values of one unit make one value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Unit {
+    /// A repetition of a run, for times: its rows share the condition of the machine, and pairs may share a process or a
+    /// denominator.
+    #[default]
+    Repetition,
+    /// A seed, for properties of images: each run and repetition renders the same image again.
+    Seed,
+    /// A scene, for claims about scenes.
+    Scene,
 }
 
 #[derive(Debug, Clone, Copy, Deserialize)]
@@ -82,6 +95,8 @@ struct OfRows {
     experiment: String,
     #[serde(default)]
     rows: Conditions,
+    #[serde(default)]
+    unit: Unit,
     #[serde(flatten)]
     fields: Table,
 }
@@ -105,10 +120,10 @@ impl Statistic {
         if name == guard {
             return Ok(Self::Guard(read(name, fields)?));
         }
-        let OfRows { experiment, rows, fields } = read(name, fields)?;
+        let OfRows { experiment, rows, unit, fields } = read(name, fields)?;
         // The name is a key here: with a tag among the fields, serde would not tell the key of a wrong value.
         let kind = read(name, &Table::from_iter([(name.to_string(), Value::Table(fields))]))?;
-        Ok(Self::OfRows { experiment, rows, kind })
+        Ok(Self::OfRows { experiment, rows, unit, kind })
     }
 }
 
@@ -150,8 +165,10 @@ impl fmt::Display for Statistic {
         match self {
             Self::Case(Cases { ids }) => write!(f, "failed among the hard cases {}", ids.join(", ")),
             Self::Guard(GuardValue { guard, column }) => write!(f, "{} of the guard \"{guard}\"", column.name()),
-            Self::OfRows { experiment, rows, kind } if rows.is_empty() => write!(f, "{kind}; all rows of {experiment}"),
-            Self::OfRows { experiment, rows, kind } => write!(f, "{kind}; rows of {experiment} where {rows}"),
+            Self::OfRows { experiment, rows, kind, .. } if rows.is_empty() => {
+                write!(f, "{kind}; all rows of {experiment}")
+            }
+            Self::OfRows { experiment, rows, kind, .. } => write!(f, "{kind}; rows of {experiment} where {rows}"),
         }
     }
 }
@@ -159,15 +176,19 @@ impl fmt::Display for Statistic {
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Value { column, per: None } => write!(f, "median {column}"),
-            Self::Value { column, per: Some(per) } => write!(f, "median {column} / {per}"),
-            Self::Share { column, of } => write!(f, "mean {column} / {of}"),
+            Self::Value { column, plus, per } => {
+                let sum = plus.as_ref().map_or_else(|| column.to_string(), |plus| format!("({column} + {plus})"));
+                write!(f, "{sum}{}", per.as_ref().map_or_else(String::new, |per| format!(" / {per}")))
+            }
             Self::Count { column } => write!(f, "sum of {column}"),
-            Self::PairedRatio { column, over } => write!(f, "median ratio of {column} to that of rows where {over}"),
-            Self::Speedup { over } => write!(f, "median speedup against rows where {over}"),
+            Self::PairedRatio { column, over } => write!(f, "ratio of {column} to that of rows where {over}"),
+            Self::Speedup { over, column } => {
+                let of = column.as_ref().map_or_else(String::new, |column| format!(" of {column}"));
+                write!(f, "speedup{of} against rows where {over}")
+            }
             Self::Exponent { x, y } => write!(f, "exponent of {y} against {x}"),
             Self::RmseSlope {} => f.write_str("exponent of rmse against spp"),
-            Self::Z { column, over } => write!(f, "z of mean {column} against rows where {over}"),
+            Self::MeanRatio { column, over } => write!(f, "ratio of mean {column} to that of rows where {over}"),
             Self::RankCorrelation { x, y, by } => write!(f, "rank correlation of {y} with {x} by {by}"),
             Self::Checksum {} => f.write_str("largest number of checksums of one image"),
             Self::Forecast { strategy, cores, column } => {

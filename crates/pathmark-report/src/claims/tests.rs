@@ -1,18 +1,22 @@
-use super::condition::{Columns, columns};
+use super::condition::{Columns, Conditions, columns, text};
 use super::definition::Test;
-use super::measure::Measurement;
+use super::judge::Age;
+use super::measure::identity;
+use super::measurement::{Measurement, Rule};
 use super::statistic::{Kind, Statistic};
 use super::*;
+use crate::cases_file::{self, CaseRow};
 use crate::error::Error;
 use crate::experiment::{Cell, Definition, Profile};
+use crate::guard_prices;
 use crate::measure::Record;
 use crate::tests::{folder_of, row};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 const HEAD: &str = "report = \"X\"\ntitle = \"T\"\nabout = \"Who.\"\n";
 
 fn claim(evidence: &str) -> String {
-    let words = "quote = \"q\"\nplace = \"p\"\nreported = \"r\"\nclaim = \"c\"\nexpected = \"confirmed\"\n";
+    let words = "quote = \"q\"\nplace = \"p\"\nreported = \"r\"\nclaim = \"c\"\nexpected = \"confirmed\"\nfrozen = \"2026-01-01T00:00:00Z\"\nreason = \"w\"\n";
     format!("{HEAD}[[claim]]\nid = 1\n{words}{evidence}\n")
 }
 
@@ -55,15 +59,19 @@ fn both_ways(rows: &[Record], evidence: &str, [low, high]: [f64; 2]) {
 }
 
 #[test]
-fn values_shares_and_counts() {
+fn values_and_counts() {
     let rows = rows(9, |index, row| {
         row.makespan_s = Some(about(2.0, index));
-        row.cpu_user_s = Some(about(1.0, index + 1));
+        (row.cpu_user_s, row.cpu_system_s) = (Some(about(1.5, index)), Some(about(0.5, index + 1)));
         row.invalid_samples = Some(3);
     });
     both_ways(&rows, "statistic = \"value\"\ncolumn = \"makespan_s\"", [1.9, 2.1]);
     both_ways(&rows, "statistic = \"value\"\ncolumn = \"makespan_s\"\nper = \"spp\"", [0.4, 0.6]);
-    both_ways(&rows, "statistic = \"share\"\ncolumn = \"cpu_user_s\"\nof = \"makespan_s\"", [0.49, 0.51]);
+    both_ways(
+        &rows,
+        "statistic = \"value\"\ncolumn = \"cpu_user_s\"\nplus = \"cpu_system_s\"\nper = \"makespan_s\"",
+        [0.99, 1.01],
+    );
     both_ways(&rows, "statistic = \"count\"\ncolumn = \"invalid_samples\"", [26.5, 27.5]);
 }
 
@@ -139,18 +147,17 @@ fn only_seeds_are_independent() {
             }
         }
     }
-    let pair = "statistic = \"z\"\ncolumn = \"mean_radiance\"\nrows = { estimator = \"bsdf\" }\nover = { estimator = \"mis\" }\nwithin = [-9, 9]";
+    let pair = "statistic = \"mean-ratio\"\ncolumn = \"mean_radiance\"\nrows = { estimator = \"bsdf\" }\nover = { estimator = \"mis\" }\nwithin = [-9, 9]";
     let found = answer(&all, pair).2.unwrap();
-    // The variance of 1, 2, 3, 4 is 5/3, so each mean has the squared standard error 5/12.
-    assert!((found.value - 1.0 / libm::sqrt(5.0 / 6.0)).abs() < 1e-12, "{found:?}");
-    assert_eq!(found.count, 8, "four seeds on either side");
+    assert!((found.value - 13.5 / 12.5).abs() < 1e-12, "{found:?}");
+    assert_eq!((found.units, found.rule), (8, Rule::Welch), "four seeds on either side");
     let slope = "statistic = \"rmse-slope\"\nrows = { estimator = \"mis\" }\nwithin = [-0.6, -0.4]";
-    assert_eq!(answer(&all, slope).2.unwrap().count, 4);
+    assert_eq!(answer(&all, slope).2.unwrap().units, 4);
     // A second size with thrice the squared error triples no count and leaves the exponent as it is.
     let larger = all.iter().map(|row| Record { width: 16, mse: row.mse.map(|mse| 3.0 * mse), ..row.clone() });
     let both: Vec<Record> = larger.chain(all.clone()).collect();
     let found = answer(&both, slope).2.unwrap();
-    assert!(found.count == 4 && (found.value + 0.5).abs() < 1e-9, "{found:?}");
+    assert!(found.units == 4 && (found.value + 0.5).abs() < 1e-9, "{found:?}");
 }
 
 #[test]
@@ -177,12 +184,15 @@ fn means_ranks_and_checksums() {
         row.checksum = format!("{index}");
     });
     let pair = "column = \"mean_radiance\"\nrows = { estimator = \"bsdf\" }\nover = { estimator = \"mis\" }";
-    both_ways(&all, &format!("statistic = \"z\"\n{pair}"), [-4.0, 4.0]);
+    both_ways(&all, &format!("statistic = \"mean-ratio\"\n{pair}"), [0.99, 1.01]);
     let shifted = rows(20, |index, row| {
         *row = all[index as usize].clone();
         row.mean_radiance = row.mean_radiance.map(|mean| if index % 2 == 0 { mean + 0.1 } else { mean });
     });
-    assert_eq!(verdict(&shifted, &format!("statistic = \"z\"\n{pair}\nwithin = [-4, 4]")).0, Verdict::Refuted);
+    assert_eq!(
+        verdict(&shifted, &format!("statistic = \"mean-ratio\"\n{pair}\nwithin = [0.99, 1.01]")).0,
+        Verdict::Refuted
+    );
 
     let ranked = rows(12, |index, row| {
         row.scene = format!("scene {index}");
@@ -237,36 +247,40 @@ fn refused(evidence: &str) -> String {
 fn everything_a_claim_asks_for_exists() {
     let rows = "experiment = \"e\"\nrows = { scene = \"cornell\" }\nlevel = 0.95\nat-least = 1.0";
     for (evidence, told) in [
-        (format!("statistic = \"mode\"\n{rows}"), vec!["X.toml:11", "mode", "rank-correlation"]),
-        (format!("statistic = \"value\"\n{rows}"), vec!["X.toml:11", "column"]),
-        (format!("statistic = \"value\"\ncolumn = \"seconds\"\n{rows}"), vec!["X.toml:12", "seconds", "makespan_s"]),
-        (format!("statistic = \"checksum\"\nx = \"spp\"\n{rows}"), vec!["X.toml:11", "`x`"]),
+        (format!("statistic = \"mode\"\n{rows}"), vec!["X.toml:13", "mode", "rank-correlation"]),
+        (format!("statistic = \"value\"\n{rows}"), vec!["X.toml:13", "column"]),
+        (format!("statistic = \"value\"\ncolumn = \"seconds\"\n{rows}"), vec!["X.toml:14", "seconds", "makespan_s"]),
+        (format!("statistic = \"checksum\"\nx = \"spp\"\n{rows}"), vec!["X.toml:13", "`x`"]),
         (format!("statistic = \"checksum\"\n{}", rows.replace("level = 0.95\n", "")), vec!["X.toml:5", "level"]),
-        (format!("statistic = \"checksum\"\n{}", rows.replace("0.95", "95")), vec!["X.toml:14", "95"]),
+        (format!("statistic = \"checksum\"\n{}", rows.replace("0.95", "95")), vec!["X.toml:16", "95"]),
         (format!("statistic = \"checksum\"\n{}", rows.replace("at-least = 1.0", "")), vec!["X.toml:5", "within"]),
         (format!("statistic = \"checksum\"\nwithin = [1, 2]\n{rows}"), vec!["X.toml:5", "at-most"]),
         (format!("statistic = \"checksum\"\n{}", rows.replace("scene", "szene")), vec!["szene", "scene_hash"]),
-        ("statistic = \"case\"\nids = []\nlevel = 0.95\nat-most = 0.0".to_string(), vec!["X.toml:12", "hard case"]),
+        ("statistic = \"case\"\nids = []\nlevel = 0.95\nat-most = 0.0".to_string(), vec!["X.toml:14", "hard case"]),
         (
             format!("statistic = \"forecast\"\nstrategy = \"s\"\ncores = \"many\"\ncolumn = \"speedup\"\n{rows}"),
-            vec!["X.toml:13", "cores", "many"],
+            vec!["X.toml:15", "cores", "many"],
         ),
-        (format!("statistic = \"z\"\nover = {{ colour = 1 }}\n{rows}"), vec!["X.toml:12", "over", "colour", "spp"]),
+        (
+            format!("statistic = \"mean-ratio\"\nover = {{ colour = 1 }}\n{rows}"),
+            vec!["X.toml:14", "over", "colour", "spp"],
+        ),
         (
             format!("statistic = \"count\"\ncolumn = \"spp\"\nrows = 3\n{}", rows.replace("rows", "over")),
-            vec!["X.toml:13", "rows", "3"],
+            vec!["X.toml:15", "rows", "3"],
         ),
         (
             "statistic = \"case\"\nids = [\"a\"]\nexperiment = \"e\"\nat-most = 0.0".to_string(),
-            vec!["X.toml:11", "`experiment`"],
+            vec!["X.toml:13", "`experiment`"],
         ),
         (
             "statistic = \"guard\"\nguard = \"g\"\ncolumn = \"price\"".to_string(),
-            vec!["X.toml:13", "price", "time_ratio"],
+            vec!["X.toml:15", "price", "time_ratio"],
         ),
         (String::new(), vec!["X.toml:5", "context"]),
+        ("context = \"c\"\nnot-comparable = \"n\"".to_string(), vec!["X.toml:5", "not-comparable"]),
         (format!("statistic = \"checksum\"\n{rows}\ncontext = \"c\""), vec!["X.toml:5", "missing"]),
-        ("context = \"c\"\nexpectd = 1".to_string(), vec!["X.toml:12", "expectd"]),
+        ("context = \"c\"\nexpectd = 1".to_string(), vec!["X.toml:14", "expectd"]),
     ] {
         let error = refused(&evidence);
         assert!(told.iter().all(|word| error.contains(word)), "{evidence}\n{error}");
@@ -286,7 +300,7 @@ fn each_claim_appears_once_and_quotes_its_report() {
     let reports = Report::all().unwrap();
     let mut ids: Vec<u32> = reports.iter().flat_map(|report| &report.claims).map(|claim| claim.id).collect();
     ids.sort_unstable();
-    assert_eq!(ids, (1..=72).collect::<Vec<u32>>());
+    assert_eq!(ids, (1..=85).collect::<Vec<u32>>());
     for report in &reports {
         let (_, text) = EXCERPTS.iter().find(|(letter, _)| *letter == report.report).expect("excerpts of each report");
         for claim in &report.claims {
@@ -295,14 +309,33 @@ fn each_claim_appears_once_and_quotes_its_report() {
     }
 }
 
-/// Every query matches rows that a sweep of the quick profile or of the reports' profile will write.
+/// Every change of a claim is told to readers.
+#[test]
+fn changes_are_listed_in_the_documentation() {
+    let text = include_str!("../../../../docs/reports.md");
+    let reports = Report::all().unwrap();
+    let changed = reports.iter().flat_map(|report| &report.claims).filter(|claim| !claim.changed.is_empty());
+    let listed = |id: u32| text.contains(&format!("* **Claim {id}**:")) || is_in_list(text, id);
+    let missing: Vec<u32> = changed.map(|claim| claim.id).filter(|id| !listed(*id)).collect();
+    assert_eq!(missing, Vec::<u32>::new());
+}
+
+/// Whether the line of new claims names this one.
+fn is_in_list(text: &str, id: u32) -> bool {
+    let list = text.split_once("* **New claims**: ").map_or("", |(_, list)| list);
+    let list = list.split_once('.').map_or("", |(list, _)| list).replace(" and ", ", ");
+    list.split(|c: char| c == ',' || c.is_whitespace()).any(|number| number.parse() == Ok(id))
+}
+
+/// Every query matches rows that a sweep of the quick profile or of the reports' profile will write, and some of them have
+/// partners.
 #[test]
 fn each_query_asks_for_rows_of_an_experiment() {
     let lab = Lab::built_in();
     let reports = Report::all().unwrap();
     let (mut rows, mut unmet): (BTreeMap<String, Vec<Columns>>, Vec<String>) = (BTreeMap::new(), Vec::new());
     for claim in reports.iter().flat_map(|report| &report.claims) {
-        let Ok(Test { statistic: Statistic::OfRows { experiment, rows: wanted, kind }, .. }) = claim.test() else {
+        let Ok(Test { statistic: Statistic::OfRows { experiment, rows: wanted, kind, .. }, .. }) = claim.test() else {
             continue;
         };
         // An experiment has no cells if the program lacks the feature that it needs.
@@ -311,9 +344,19 @@ fn each_query_asks_for_rows_of_an_experiment() {
         }
         let own = rows.entry(experiment.clone()).or_insert_with(|| cells(&lab, experiment));
         let other = match kind {
-            Kind::PairedRatio { over, .. } | Kind::Speedup { over } | Kind::Z { over, .. } => Some(over),
+            Kind::PairedRatio { over, .. } | Kind::Speedup { over, .. } | Kind::MeanRatio { over, .. } => Some(over),
             _ => None,
         };
+        if let Some(over) = other.filter(|_| !matches!(kind, Kind::MeanRatio { .. })) {
+            let shared = identity(wanted, over);
+            let keys = |conditions: &Conditions| -> BTreeSet<Vec<String>> {
+                let rows = own.iter().filter(|row| conditions.admit(row));
+                rows.map(|row| shared.iter().map(|column| text(row, column)).collect()).collect()
+            };
+            if keys(wanted).is_disjoint(&keys(over)) {
+                unmet.push(format!("{}: {experiment} where {wanted} beside {over}", claim.id));
+            }
+        }
         for conditions in std::iter::once(wanted).chain(other) {
             if !own.iter().any(|row| conditions.admit(row)) {
                 unmet.push(format!("{}: {experiment} where {conditions}", claim.id));
@@ -350,4 +393,194 @@ fn a_number_near_the_limit_may_have_either_verdict() {
     assert!(surprises("open") && surprises("open or refuted"));
     let wrong = claim(evidence).replace("\"confirmed\"", "\"open or so\"");
     assert!(Report::from_text("X.toml", &wrong).unwrap_err().to_string().contains("open or so"));
+}
+
+/// The answer of several folders, in this order, to a claim about `an-experiment`.
+fn of_folders(folders: &[&tempfile::TempDir], evidence: &str) -> (Verdict, String, Vec<String>, Option<Measurement>) {
+    let text = claim(&format!("experiment = \"an-experiment\"\nlevel = 0.95\n{evidence}"));
+    let reports = [Report::from_text("X.toml", &text).unwrap()];
+    let paths: Vec<_> = folders.iter().map(|folder| folder.path().to_path_buf()).collect();
+    let answer = judge(&Lab::built_in(), &reports, &paths).unwrap().remove(0);
+    let notes = vec![answer.in_runs(), answer.settled_by(), answer.why.clone()];
+    (answer.verdict, answer.measured(), notes, answer.found)
+}
+
+/// A folder of rows that take about so many seconds.
+fn run(count: u32, seconds: f64) -> tempfile::TempDir {
+    folder_of(&[], "", rows(count, |index, row| row.makespan_s = Some(about(seconds, index))))
+}
+
+const SECONDS: &str = "statistic = \"value\"\ncolumn = \"makespan_s\"";
+
+/// Two runs confirm, one refutes, one is of another size: each order of the folders gives the same open verdict.
+#[test]
+fn no_order_of_folders_changes_a_verdict() {
+    let small = folder_of(&[], "", rows(9, |_, row| row.width = 4));
+    let all = [run(20, 1.0), run(21, 1.01), run(4, 2.0), small];
+    let test = format!("{SECONDS}\nat-most = 1.5\ncomparable-if = {{ width = 8 }}");
+    let mut orders = vec![Vec::new()];
+    for _ in 0..all.len() {
+        let longer = |order: &Vec<usize>| {
+            let rest = (0..all.len())
+                .filter(|place| !order.contains(place))
+                .map(|place| [order.clone(), vec![place]].concat());
+            rest.collect::<Vec<_>>()
+        };
+        orders = orders.iter().flat_map(longer).collect();
+    }
+    assert_eq!(orders.len(), 24);
+    let answers =
+        orders.iter().map(|order| of_folders(&order.iter().map(|place| &all[*place]).collect::<Vec<_>>(), &test));
+    let answers: Vec<_> = answers.collect();
+    assert!(answers.iter().all(|answer| *answer == answers[0]), "{answers:?}");
+    let (verdict, _, notes, found) = &answers[0];
+    assert_eq!((*verdict, notes[0].as_str()), (Verdict::Open, "confirmed in 2, refuted in 1 of 3 runs"));
+    assert_eq!(found.unwrap().units, 45, "the rows of the other size are left out");
+    assert!(found.unwrap().interval.unwrap().high < 1.5, "the runs together would confirm it");
+    // A folder that is named twice is one run.
+    assert_eq!(of_folders(&[&all[0], &all[0]], &test), of_folders(&[&all[0]], &test));
+    // Rows of another size answer only if there are no others.
+    assert_eq!(of_folders(&[&all[3]], &test).0, Verdict::NotComparable);
+}
+
+#[test]
+fn runs_that_agree_make_a_verdict() {
+    let all = [run(3, 1.0), run(4, 1.01), run(5, 1.02)];
+    let of = |bound: &str| of_folders(&[&all[0], &all[1], &all[2]], &format!("{SECONDS}\n{bound}"));
+    let (verdict, _, notes, found) = of("at-most = 1.5");
+    assert_eq!((verdict, notes[0].as_str(), notes[1].as_str()), (Verdict::Confirmed, "in 3 of 3 runs", ""));
+    assert_eq!((found.unwrap().units, found.unwrap().rule), (12, Rule::Median));
+    assert_eq!((of("at-least = 1.5").0, of("at-least = 1.5").2[0].as_str()), (Verdict::Refuted, "in 3 of 3 runs"));
+    // Each run alone has too few rows to tell 1.0 from 1.0005.
+    let (verdict, _, notes, _) = of_folders(&[&all[0]], &format!("{SECONDS}\nat-most = 1.0005"));
+    assert_eq!(verdict, Verdict::Open);
+    assert!(notes[1].contains("more repetitions would settle it"), "{notes:?}");
+}
+
+/// Two repetitions decide nothing alone, however near to each other; those of three runs do.
+#[test]
+fn short_runs_are_judged_together() {
+    let all = [run(2, 1.0), run(2, 1.01), run(2, 1.02)];
+    let test = format!("{SECONDS}\nat-most = 1.5");
+    let (verdict, _, notes, _) = of_folders(&[&all[0], &all[1], &all[2]], &test);
+    assert_eq!((verdict, notes[0].as_str()), (Verdict::Confirmed, "over 3 runs, none long enough alone"));
+    let (verdict, _, notes, _) = of_folders(&[&all[0], &run(5, 1.0)], &test);
+    assert_eq!((verdict, notes[0].as_str()), (Verdict::Confirmed, "in 1 of 1 run, 1 too short alone"));
+}
+
+/// Rows of one run share the machine's condition on that day, so with six runs the runs are the units.
+#[test]
+fn many_runs_are_the_units() {
+    let all: Vec<tempfile::TempDir> = (0..6).map(|day| run(9, 1.0 + 0.01 * f64::from(day))).collect();
+    let found = of_folders(&all.iter().collect::<Vec<_>>(), &format!("{SECONDS}\nat-most = 1.5")).3.unwrap();
+    assert_eq!((found.units, found.noun, found.rule), (6, "run", Rule::Median));
+    assert!((found.interval.unwrap().low - 1.0).abs() < 1e-3 && (found.interval.unwrap().high - 1.05).abs() < 1e-3);
+}
+
+/// Four grids share the denominator of their repetition, and the pairs of a process its memory: both are one unit.
+#[test]
+fn pairs_that_share_something_are_one_unit() {
+    let mut all = Vec::new();
+    for repetition in 0..3 {
+        for (grid, seconds) in [(4, 1.0), (16, 0.8), (25, 0.9), (36, 1.0), (49, 1.25)] {
+            let decomposition = format!("grid:{grid}");
+            let makespan_s = Some(about(seconds, repetition));
+            all.push(Record { repetition, decomposition, makespan_s, ..row() });
+        }
+    }
+    let ratio = "statistic = \"paired-ratio\"\ncolumn = \"makespan_s\"";
+    let grids = format!(
+        "{ratio}\nrows = {{ decomposition = [\"grid:16\", \"grid:25\", \"grid:36\", \"grid:49\"] }}\nover = {{ decomposition = \"grid:4\" }}\nat-most = 1.05"
+    );
+    let found = answer(&all, &grids).2.unwrap();
+    assert_eq!((found.units, found.noun), (3, "repetition"));
+    assert!((found.value - libm::pow(0.8 * 0.9 * 1.25, 0.25)).abs() < 1e-12, "{found:?}");
+
+    let mut pairs = Vec::new();
+    for repetition in 0..4 {
+        for pair in 0..3 {
+            for (strategy, seconds) in
+                [("serial", 2.0), ("pool", 1.0 + 0.1 * f64::from(pair) + 0.01 * f64::from(repetition))]
+            {
+                let (strategy, cell) = (strategy.to_string(), strategy.to_string());
+                pairs.push(Record { repetition, pair: Some(pair), strategy, cell, makespan_s: Some(seconds), ..row() });
+            }
+        }
+    }
+    let pool =
+        "statistic = \"speedup\"\nrows = { strategy = \"pool\" }\nover = { strategy = \"serial\" }\nat-least = 1.0";
+    let found = answer(&pairs, pool).2.unwrap();
+    // The middle pair of each process takes 1.1 s and a little more.
+    assert_eq!((found.units, found.noun), (4, "repetition"));
+    assert!((found.value - 2.0 / 1.115).abs() < 1e-3, "{found:?}");
+}
+
+/// Rows that were measured before the claim was fixed judge nothing: its bound may have been chosen by them.
+#[test]
+fn a_bound_younger_than_its_rows_is_told() {
+    let age = |first: &str, last: &str| {
+        let times = rows(9, |index, row| {
+            row.started_utc = if index == 0 { first } else { last }.to_string();
+        });
+        let out = folder_of(&[], "", times);
+        let text = claim(&format!("experiment = \"an-experiment\"\nlevel = 0.95\n{SECONDS}\nat-most = 9.0"));
+        let reports = [Report::from_text("X.toml", &text).unwrap()];
+        let answers = judge(&Lab::built_in(), &reports, &[out.path().to_path_buf()]).unwrap();
+        (answers[0].verdict, answers[0].is_bound_younger(), answers[0].age)
+    };
+    let after = "2026-01-01T00:00:01Z";
+    assert_eq!(age(after, after), (Verdict::Confirmed, false, Age::BoundFirst));
+    assert_eq!(age("2025-12-31T23:59:59Z", after), (Verdict::Confirmed, true, Age::RowsFirst));
+    assert_eq!(age("", after), (Verdict::Confirmed, true, Age::Unknown));
+    for wrong in ["2026-01-01", "2026-01-01T00:00:00+01:00", "soon 0123abcd"] {
+        let text = claim("context = \"c\"").replace("2026-01-01T00:00:00Z", wrong);
+        let error = Report::from_text("X.toml", &text).unwrap_err().to_string();
+        assert!(error.contains("frozen") && error.contains("0123abcd") && error.contains("X.toml:11"), "{error}");
+    }
+    let without =
+        claim(&format!("experiment = \"e\"\nlevel = 0.95\n{SECONDS}\nat-most = 9.0")).replace("reason = \"w\"", "");
+    assert!(Report::from_text("X.toml", &without).unwrap_err().to_string().contains("no reason"));
+}
+
+/// Hard cases and the price list of the guards judge claims in both directions; of several folders the hull of the intervals does.
+#[test]
+fn cases_and_guards_judge_both_ways() {
+    let folder = |failed: usize, error: f64| {
+        let out = tempfile::tempdir().unwrap();
+        let case = |id: &str, failed: usize| CaseRow {
+            id: id.to_string(),
+            tries: String::new(),
+            pass: failed == 0,
+            trials: 2,
+            failed,
+            variant: String::new(),
+            expected: String::new(),
+            found: String::new(),
+            skipped: String::new(),
+        };
+        cases_file::write(out.path(), &[case("C1", 0), case("C2", failed)]).unwrap();
+        let prices = out.path().join(guard_prices::FOLDER);
+        std::fs::create_dir(&prices).unwrap();
+        // A file of the first version, which has fewer columns.
+        let head = "guard,error,with,without,error_with,error_with_low,error_with_high,error_without,error_without_low,\
+                    error_without_high,operation,ns_with,ns_without,time_ratio,time_ratio_low,time_ratio_high";
+        let text = format!("{head}\ng,,,,{error},{},{},1,1,1,,,,,,\n", 0.9 * error, 1.1 * error);
+        std::fs::write(prices.join(guard_prices::FILE), text).unwrap();
+        out
+    };
+    let of = |folders: &[&tempfile::TempDir], evidence: &str| {
+        let reports = [Report::from_text("X.toml", &claim(&format!("level = 0.95\n{evidence}"))).unwrap()];
+        let paths: Vec<_> = folders.iter().map(|folder| folder.path().to_path_buf()).collect();
+        let answer = judge(&Lab::built_in(), &reports, &paths).unwrap().remove(0);
+        (answer.verdict, answer.found.map_or(0, |found| found.units))
+    };
+    let (good, bad) = (folder(0, 1e-3), folder(1, 1.0));
+    let cases = "statistic = \"case\"\nids = [\"C1\", \"C2\"]\nwithin = [0, 0]";
+    assert_eq!((of(&[&good], cases), of(&[&bad], cases)), ((Verdict::Confirmed, 2), (Verdict::Refuted, 2)));
+    assert_eq!(of(&[&good, &bad], cases), (Verdict::Open, 2));
+    assert_eq!(of(&[&good], &cases.replace("C2", "C3")).0, Verdict::NotAnswered);
+    let guard = "statistic = \"guard\"\nguard = \"g\"\ncolumn = \"error_with\"\nat-most = 0.1";
+    assert_eq!((of(&[&good], guard).0, of(&[&bad], guard).0), (Verdict::Confirmed, Verdict::Refuted));
+    assert_eq!(of(&[&bad, &good], guard).0, Verdict::Open);
+    assert_eq!(of(&[&good], &guard.replace("error_with", "time_ratio")).0, Verdict::NotAnswered, "not timed");
 }

@@ -1,6 +1,6 @@
 //! Verdicts: the comparison of a measured interval with the prediction of a claim.
 
-use super::measure::Measurement;
+use super::measurement::Measurement;
 use std::fmt;
 
 pub(super) const NAMES: [&str; 6] = ["confirmed", "refuted", "open", "not-comparable", "not-answered", "context"];
@@ -63,7 +63,7 @@ mod tests {
 
     fn of(low: f64, high: f64, predicted: [f64; 2]) -> Verdict {
         let interval = Interval::between(low, high, 0.95);
-        Verdict::of(&Measurement { value: 0.5 * (low + high), interval, count: 9 }, predicted)
+        Verdict::of(&Measurement::of_table(0.5 * (low + high), interval, 9, "row"), predicted)
     }
 
     #[test]
@@ -87,6 +87,6 @@ mod tests {
 
     #[test]
     fn a_single_value_decides_nothing() {
-        assert_eq!(Verdict::of(&Measurement { value: 1.0, interval: None, count: 1 }, [0.9, 1.1]), Verdict::Open);
+        assert_eq!(Verdict::of(&Measurement::of_table(1.0, None, 1, "row"), [0.9, 1.1]), Verdict::Open);
     }
 }

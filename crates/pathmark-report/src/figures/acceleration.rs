@@ -77,7 +77,7 @@ fn against_primitives(results: &Results, sizes: &Places<'_>, accelerators: &[(us
     let mut chart = LineChart::new("Time per ray against the number of spheres", x, y, series.collect());
     chart.subtitle = format!("balls filling the same share of a cube, {}", results.run.machine.line());
     let bars = bars(times.iter().map(|(_, time)| *time));
-    chart.caption = format!("Median of repetitions of {}, shading and all. {bars}", first.estimator);
+    chart.caption = format!("Repetitions of {}, shading and all. {bars}", first.estimator);
     Some(Block::figure("acceleration", chart))
 }
 

@@ -1,6 +1,7 @@
 //! Cost and gain of an approximation: light lost, noise and doubtful pixels by the value of one axis, against rows in
 //! which the axis has its usual value.
 
+use crate::plot::Dot;
 use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
@@ -43,7 +44,9 @@ struct Cost {
     rmse: Option<f64>,
     within: Option<f64>,
     black: Option<f64>,
-    fireflies: Option<f64>,
+    /// The black pixels less those with the usual value, as a share of the image, paired by seed.
+    more_black: Option<Estimated>,
+    fireflies: Option<Estimated>,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
@@ -64,27 +67,12 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let spp = most.entry(&cost.scene).or_default();
         *spp = cost.spp.max(*spp);
     }
-    let scenes: BTreeSet<&str> = costs.iter().map(|cost| cost.scene.as_str()).collect();
-    let row = |value: &String| {
-        let dot = |scene: &&str| {
-            let is_shown =
-                |cost: &&Cost| cost.value == *value && cost.scene == *scene && Some(&cost.spp) == most.get(scene);
-            let own = costs.iter().find(is_shown)?;
-            Some(own.light.times(100.0).dot())
-        };
-        DotRow::new(value, scenes.iter().map(dot).collect())
-    };
-    let mut plot = DotPlot::new(
-        format!("Light by {name}"),
-        Axis::linear(format!("mean radiance against {usual}, %")).including([100.0]),
-        values.iter().map(row).collect(),
-    )
-    .grouped(scenes.iter().copied());
-    plot.subtitle = results.workload();
-    plot.caption =
-        "Bars: 95 % interval over seeds, of ratios within a seed. Each scene at the most samples that were compared."
-            .to_string();
-    plot.guides = vec![(100.0, usual.clone())];
+    let shown = Shown { results, name, usual: &usual, values: &values, most: &most, costs: &costs };
+    let mut blocks = vec![Block::figure("bias", shown.light())];
+    let meaning = "A firefly is brighter than the reference by more than 1, the display's white, in a channel.";
+    blocks.extend(shown.share("fireflies", ["Fireflies", "fireflies", meaning], |cost| cost.fireflies));
+    let (axis, meaning) = (format!("black pixels less those with {usual}"), "In a black pixel every channel is 0.");
+    blocks.extend(shown.share("black-pixels", ["Black pixels", &axis, meaning], |cost| cost.more_black));
     let is_shown = |cost: &&Cost| cost.value != usual && Some(&cost.spp) == most.get(cost.scene.as_str());
     let worst = costs.iter().filter(is_shown).max_by(|a, b| {
         let off = |cost: &Cost| (cost.light.value - 1.0).abs();
@@ -113,9 +101,102 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .number("RMSE", Decimals(5), |cost| cost.rmse)
         .number("pixels within 0.05 of the display, %", Decimals(2), |cost| percent(cost.within))
         .number("black pixels, %", Decimals(3), |cost| percent(cost.black))
-        .number("fireflies in a million pixels", Decimals(0), |cost| cost.fireflies.map(|share| 1e6 * share))
+        .estimated("fireflies in a million pixels", Decimals(0), |cost| cost.fireflies.map(|share| share.times(1e6)))
         .end();
-    Ok([Block::figure("bias", plot)].into_iter().chain(finding).chain([table]).collect())
+    Ok(blocks.into_iter().chain(finding).chain([table]).collect())
+}
+
+/// Changes of the light below this many percent are rounding.
+const ROUNDING: f64 = 1e-4;
+
+/// The results that the plots show.
+struct Shown<'a> {
+    results: &'a Results,
+    /// The axis.
+    name: &'a str,
+    usual: &'a str,
+    values: &'a [String],
+    /// The samples per pixel that are shown of each scene.
+    most: &'a BTreeMap<&'a str, u32>,
+    costs: &'a [Cost],
+}
+
+impl Shown<'_> {
+    fn cost(&self, value: &str, scene: &str) -> Option<&Cost> {
+        let spp = self.most.get(scene)?;
+        self.costs.iter().find(|cost| cost.value == value && cost.scene == scene && cost.spp == *spp)
+    }
+
+    /// The change of the light in percent. Its axis is logarithmic, so that a hundredth of a percent and half of the
+    /// light both have a place; lighter and darker are groups of their own.
+    fn light(&self) -> DotPlot {
+        let several = self.most.len() > 1;
+        let groups = self.most.keys().flat_map(|scene| ["lighter", "darker"].map(|side| (*scene, side)));
+        let groups: Vec<(&str, &str)> = groups.collect();
+        let dot = |value: &str, scene: &str, side: &str| {
+            let change = self.cost(value, scene)?.light.times(100.0);
+            let (own, sign) = (change.value - 100.0, if side == "lighter" { 1.0 } else { -1.0 });
+            if own * sign < ROUNDING {
+                return None;
+            }
+            let bar = change.bar().map(|(low, high)| [low, high].map(|end| sign * (end - 100.0)));
+            let bar = bar.map(|[a, b]| (a.min(b), a.max(b)));
+            let hollow = bar.is_none_or(|(low, _)| low <= 0.0);
+            Some(Dot { value: own.abs(), interval: bar, count: change.count, hollow })
+        };
+        let others = || self.values.iter().filter(|value| *value != self.usual);
+        let has_dot = |(scene, side): &(&str, &str)| others().any(|value| dot(value, scene, side).is_some());
+        let groups: Vec<(&str, &str)> = groups.into_iter().filter(has_dot).collect();
+        let row =
+            |value: &String| DotRow::new(value, groups.iter().map(|(scene, side)| dot(value, scene, side)).collect());
+        let sides: BTreeSet<&str> = groups.iter().map(|(_, side)| *side).collect();
+        let subject = match sides.into_iter().collect::<Vec<&str>>()[..] {
+            ["darker"] => "mean radiance lost",
+            ["lighter"] => "mean radiance gained",
+            _ => "change of the mean radiance",
+        };
+        let axis = Axis::log(format!("{subject} against {}, %", self.usual));
+        let names =
+            groups.iter().map(|(scene, side)| if several { format!("{scene}, {side}") } else { (*side).to_string() });
+        let mut plot =
+            DotPlot::new(format!("Light by {}", self.name), axis, others().map(row).collect()).grouped(names);
+        plot.subtitle = self.results.workload();
+        plot.caption = format!(
+            "Bars: 95 % interval over seeds, of ratios within a seed. Hollow: the interval contains no change. No dot: less than {ROUNDING} %. Each scene at {}.",
+            self.samples()
+        );
+        plot
+    }
+
+    fn samples(&self) -> String {
+        let spp: BTreeSet<u32> = self.most.values().copied().collect();
+        if let [spp] = spp.into_iter().collect::<Vec<u32>>()[..] {
+            return format!("{spp} samples per pixel");
+        }
+        let each: Vec<String> =
+            self.most.iter().map(|(scene, spp)| format!("{spp} samples per pixel ({scene})")).collect();
+        each.join(" and ")
+    }
+
+    /// A share of the pixels, in a million; `None` if it is 0 in every image.
+    fn share(
+        &self,
+        stem: &'static str,
+        [title, axis, meaning]: [&str; 3],
+        of: fn(&Cost) -> Option<Estimated>,
+    ) -> Option<Block> {
+        let dot = |value: &String, scene: &&str| Some(of(self.cost(value, scene)?)?.times(1e6).dot());
+        let row = |value: &String| DotRow::new(value, self.most.keys().map(|scene| dot(value, scene)).collect());
+        let rows: Vec<DotRow> = self.values.iter().map(row).collect();
+        if rows.iter().flat_map(|row| row.dots.iter().flatten()).all(|dot| dot.value == 0.0) {
+            return None;
+        }
+        let axis = Axis::linear(format!("{axis}, in a million pixels")).including([0.0]);
+        let mut plot = DotPlot::new(format!("{title} by {}", self.name), axis, rows).grouped(self.most.keys().copied());
+        plot.subtitle = self.results.workload();
+        plot.caption = format!("{meaning} Bars: 95 % interval over seeds. Each scene at {}.", self.samples());
+        Some(Block::figure(stem, plot))
+    }
 }
 
 /// The values in order: the usual one, then by their numbers; a value without a number counts as 0.
@@ -132,8 +213,11 @@ fn in_order(values: impl Iterator<Item = String>, usual: &str) -> Vec<String> {
 fn costs(results: &Results, of: Value, forget: fn(&mut ImageKey), usual: &str) -> Vec<Cost> {
     // Images are compared whatever the kernel: an approximation may exist for one kernel only, and kernels give the
     // same image.
-    let plain = results.rows().filter(|row| of(&row.image).is_empty());
-    let plain = Repeats::of_images(plain, forget, |row| row.mean_radiance);
+    let plain: Vec<&Row> = results.rows().filter(|row| of(&row.image).is_empty()).collect();
+    let black = |row: &Row| Some(row.black_pixels? as f64 / pixels(row));
+    let of_black = |rows: &[&Row]| Repeats::of_images(rows.iter().copied(), forget, black);
+    let plain_black = of_black(&plain);
+    let plain = Repeats::of_images(plain.iter().copied(), forget, |row| row.mean_radiance);
     let cells = results.by(|row| (row.scene.as_str(), of(&row.image), row.spp));
     let cost = |((scene, value, spp), rows): ((&str, &str, u32), Vec<&Row>)| {
         let rows = rows.into_iter().map(|row| (&row.image, row)).collect::<BTreeMap<_, _>>().into_values();
@@ -143,6 +227,7 @@ fn costs(results: &Results, of: Value, forget: fn(&mut ImageKey), usual: &str) -
             let all = values(&rows, value);
             (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
         };
+        let share = |value: fn(&Row) -> Option<f64>| Estimated::mean(&values(&rows, value));
         Some(Cost {
             scene: scene.to_string(),
             value: if value.is_empty() { usual.to_string() } else { value.to_string() },
@@ -150,8 +235,9 @@ fn costs(results: &Results, of: Value, forget: fn(&mut ImageKey), usual: &str) -
             light: Estimated::mean(&light.values())?,
             rmse: mean(|row| row.rmse),
             within: mean(|row| row.within_tolerance),
-            black: mean(|row| Some(row.black_pixels? as f64 / pixels(row))),
-            fireflies: mean(|row| Some(row.fireflies? as f64 / pixels(row))),
+            black: mean(black),
+            more_black: Estimated::mean(&of_black(&rows).minus(&plain_black).values()),
+            fireflies: share(|row| Some(row.fireflies? as f64 / pixels(row))),
         })
     };
     cells.into_iter().filter_map(cost).collect()

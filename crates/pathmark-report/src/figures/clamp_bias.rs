@@ -63,7 +63,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     );
     chart.dodge = 8.0;
     chart.subtitle = results.workload();
-    chart.caption = format!("Bars: 95 % interval over seeds. The limit is the clamped image at {largest} spp.");
+    let other = prototype.as_ref().map_or("", |_| {
+        " Prototype: an independent program of a few lines with the same estimator, whose values the experiment's file gives, without intervals."
+    });
+    chart.caption = format!("Bars: 95 % interval over seeds. The limit is the clamped image at {largest} spp.{other}");
     let apart = losses.iter().filter_map(|loss| Some((loss.lost.value - loss.prototype?).abs())).reduce(f64::max);
     let beside = apart.map_or_else(String::new, |worst| {
         format!("; what was measured here is within {worst:.1} points of the prototype at every number of samples")

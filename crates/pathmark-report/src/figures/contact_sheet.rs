@@ -3,6 +3,7 @@
 use crate::image_io::Image;
 use crate::metric::{Heatmap, flip_map, heatmap};
 use crate::plot::ColourBar;
+use crate::plot::number::short;
 use crate::prelude::*;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
@@ -17,21 +18,27 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let scale = heatmap(noisiest, &reference, None)?.scale;
     let (mut pictures, mut errors, mut flips) = (Vec::new(), Vec::new(), Vec::new());
     for (record, image) in &images {
-        let rmse = record.rmse.map_or_else(String::new, |rmse| format!("RMSE {rmse:.4}"));
-        pictures.push(Some(Cell::of(image, vec![format!("{} spp", record.spp), rmse])?));
-        let seconds = record.makespan_s.map_or_else(String::new, |s| format!("{s:.2} s"));
-        errors.push(Some(map(&heatmap(image, &reference, Some(scale))?, &["error".to_string(), seconds])));
+        let seconds = record.makespan_s.map_or_else(String::new, |s| format!("time {} s", short(s, 3)));
+        pictures.push(Cell::of(image, vec![format!("{} spp", record.spp), seconds])?);
+        let rmse = record.rmse.map_or_else(String::new, |rmse| format!("RMSE {}", short(rmse, 3)));
+        errors.push(Some(map(&heatmap(image, &reference, Some(scale))?, &["error".to_string(), rmse])));
         let (flip, flips_map) = flip_map(image, &reference)?;
         flips.push(Some(map(&flips_map, &["FLIP".to_string(), format!("mean {flip:.3}")])));
     }
-    pictures.push(Some(Cell::of(&reference, vec!["reference".to_string(), "mean of two halves".to_string()])?));
+    pictures.push(Cell::of(&reference, vec!["reference".to_string(), "mean of two halves".to_string()])?);
+    let crops: Vec<Option<Cell>> = pictures.iter().map(Cell::crop).collect();
+    let step = pictures[0].step();
+    let reduced = format!("; the whole images show 1 of {step}x{step} pixels");
     errors.push(None);
     flips.push(None);
     let (estimator, schedule) = (&images[0].0.estimator, images[0].0.schedule.label());
+    let has_crops = crops.iter().any(Option::is_some);
+    let pictures: Vec<Option<Cell>> = pictures.into_iter().map(Some).collect();
+    let rows = std::iter::once(pictures).chain(has_crops.then_some(crops)).chain([errors, flips]).collect();
     let sheet = ContactSheet {
         title: format!("Renders at growing samples per pixel ({estimator}; seconds by {schedule})"),
-        subtitle: results.workload(),
-        rows: vec![pictures, errors, flips],
+        subtitle: results.workload() + if step > 1 { &reduced } else { "" },
+        rows,
         bars: vec![
             ColourBar { label: "error of a pixel, linear radiance".to_string(), full: scale, is_largest: false },
             ColourBar { label: "FLIP: how large the difference looks".to_string(), full: 1.0, is_largest: true },

@@ -1,6 +1,7 @@
 //! The price of an effect: absent, compiled in but unused, used; and the gain of each scene from the profile that fits
 //! it.
 
+use super::effect_steps;
 use crate::prelude::*;
 use crate::scene::PROFILES;
 
@@ -11,6 +12,8 @@ pub(super) struct Options {
     largest: Option<String>,
     /// The effects to price.
     price: Vec<Price>,
+    /// Scenes that add effects one by one.
+    steps: Vec<String>,
 }
 
 /// An effect, and the rows in which it is absent, compiled in but unused, and used.
@@ -19,7 +22,8 @@ pub(super) struct Options {
 struct Price {
     effect: String,
     absent: Kind,
-    unused: Kind,
+    /// `None` if no kernel has the effect compiled in where the absent one has not.
+    unused: Option<Kind>,
     used: Kind,
 }
 
@@ -29,16 +33,30 @@ struct Price {
 struct Kind {
     scene: String,
     profile: String,
+    #[serde(default = "scalar")]
+    kernel: String,
     /// Whether rays are tested against bounding boxes first.
     #[serde(default)]
     hierarchy: bool,
 }
 
+/// The kernel that has a version for each profile.
+const SCALAR: &str = "scalar";
+
+fn scalar() -> String {
+    SCALAR.to_string()
+}
+
 impl Kind {
     fn of(row: &Row) -> Self {
         let hierarchy = row.accelerator != "none";
-        Self { scene: row.scene.clone(), profile: row.effects.clone(), hierarchy }
+        Self { scene: row.scene.clone(), profile: row.effects.clone(), kernel: kernel(row).to_string(), hierarchy }
     }
+}
+
+/// The kernel of a row. A row of the kernel that took its place counts for neither.
+fn kernel(row: &Row) -> &str {
+    if row.kernel_fallback.is_empty() { &row.kernel } else { "fallback" }
 }
 
 /// The rows of a kind.
@@ -71,10 +89,17 @@ impl Times {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { largest, price } = options(&results.definition, "effects")?;
+    let Options { largest, price, steps } = options(&results.definition, "effects")?;
     let times: BTreeMap<Kind, Times> =
         results.by(Kind::of).into_iter().map(|(kind, r)| (kind, Times::of(&r))).collect();
-    let mut blocks = prices(results, &price, &times);
+    let mut blocks = Vec::new();
+    for (kernel, stem, table) in
+        [(SCALAR, "effects", "effects-table"), ("lanes", "effects-in-lanes", "effects-in-lanes-table")]
+    {
+        let own: Vec<&Price> = price.iter().filter(|price| price.absent.kernel == kernel).collect();
+        blocks.extend(prices(results, &own, &times, (kernel, stem, table)));
+    }
+    blocks.extend(effect_steps::blocks(results, &steps)?);
     blocks.extend(scenes(results, largest.as_deref().unwrap_or("all")));
     if blocks.is_empty() {
         let text = "Nothing was run with and without an effect, so there is no price of one.";
@@ -87,68 +112,88 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 struct Priced<'a> {
     price: &'a Price,
     absent: &'a Times,
-    unused: (&'a Times, Ratio),
+    unused: Option<(&'a Kind, &'a Times, Ratio)>,
     used: (&'a Times, Ratio),
 }
 
-fn prices(results: &Results, prices: &[Price], times: &BTreeMap<Kind, Times>) -> Vec<Block> {
+impl Priced<'_> {
+    fn unused_ratio(&self) -> Option<Ratio> {
+        self.unused.map(|(.., ratio)| ratio)
+    }
+}
+
+fn prices(
+    results: &Results,
+    prices: &[&Price],
+    times: &BTreeMap<Kind, Times>,
+    (kernel, stem, table): (&str, &'static str, &'static str),
+) -> Vec<Block> {
     let cells = prices.iter().enumerate().flat_map(|(index, price)| {
         let over = |kind: &Kind| Some(times.get(kind)?.sample_s.over(&times.get(&price.absent)?.sample_s));
-        [&price.unused, &price.used].map(|kind| ((index, kind), over(kind).unwrap_or_default()))
+        let kinds = price.unused.iter().chain([&price.used]);
+        kinds.map(|kind| ((index, kind), over(kind).unwrap_or_default())).collect::<Vec<_>>()
     });
     let ratios: BTreeMap<(usize, &Kind), Ratio> = estimates(cells, results.stopping()).into_iter().collect();
     let found = prices.iter().enumerate().filter_map(|(index, price)| {
         let of = |kind| Some((times.get(kind)?, *ratios.get(&(index, kind))?));
-        Some(Priced { price, absent: times.get(&price.absent)?, unused: of(&price.unused)?, used: of(&price.used)? })
+        let unused = price.unused.as_ref().and_then(|kind| of(kind).map(|(times, ratio)| (kind, times, ratio)));
+        Some(Priced { price, absent: times.get(&price.absent)?, unused, used: of(&price.used)? })
     });
     let found: Vec<Priced<'_>> = found.collect();
     if found.is_empty() {
         return Vec::new();
     }
-    let rows = found.iter().map(|found| {
-        let dot = |ratio: Ratio| Some(Estimated::from(ratio).dot());
-        DotRow::new(&found.price.effect, vec![dot(found.unused.1), dot(found.used.1)])
-    });
+    // Several effects may share one kernel in which they are unused: its price is drawn once.
+    let mut drawn = BTreeSet::new();
+    let mut rows = Vec::new();
+    for found in &found {
+        let dot = |ratio: Ratio| Estimated::from(ratio).dot();
+        let is_new = drawn.insert((&found.price.absent, found.unused.map(|(kind, ..)| kind)));
+        let unused = found.unused_ratio().filter(|_| is_new);
+        rows.push(DotRow::new(&found.price.effect, vec![unused.map(dot), Some(dot(found.used.1))]));
+    }
     let axis = Axis::linear("processor time of a sample / without the effect").including([0.95, 1.05]);
-    let plot = DotPlot::new("The price of an effect", axis, rows.collect());
-    let mut plot = plot.grouped(["compiled in, unused", "used"]);
+    let mut plot = DotPlot::new(format!("The price of an effect, kernel {kernel}"), axis, rows);
+    plot = plot.grouped(["compiled in, unused", "used"]);
     plot.guides = vec![(1.0, "absent".to_string())];
     plot.subtitle = machine(results);
     plot.caption = format!(
-        "{} What uses an effect is another image, with other paths.",
-        ratio_bars(found.iter().flat_map(|found| [found.unused.1, found.used.1])),
+        "{} A used effect is another image, with other paths. A kernel in which several effects are unused is drawn once.",
+        ratio_bars(found.iter().flat_map(|found| found.unused_ratio().into_iter().chain([found.used.1]))),
     );
     let place = |kind: &Kind| format!("{}, {}", kind.scene, kind.profile);
-    let table = Block::table("effects-table", "The price of an effect: absent, compiled in but unused, used", &found)
+    let finding = generality(&found);
+    let table = Block::table(table, format!("The price of an effect, kernel {kernel}"), &found)
         .column("effect", |found| found.price.effect.clone())
         .column("absent", |found| place(&found.price.absent))
         .number("ns per sample, absent", Decimals(0), |found| found.absent.nanoseconds())
         .number("rays per sample, absent", Decimals(2), |found| found.absent.rays)
-        .column("unused: profile", |found| found.price.unused.profile.clone())
-        .number("ns per sample, unused", Decimals(0), |found| found.unused.0.nanoseconds())
-        .estimated("ratio unused / absent", Decimals(3), |found| Estimated::from(found.unused.1))
+        .column("unused: profile", |found| found.unused.map_or("", |(kind, ..)| &kind.profile).to_string())
+        .number("ns per sample, unused", Decimals(0), |found| found.unused.and_then(|(_, own, _)| own.nanoseconds()))
+        .estimated("ratio unused / absent", Decimals(3), |found| found.unused_ratio().map(Estimated::from))
         .column("used", |found| place(&found.price.used))
         .number("ns per sample, used", Decimals(0), |found| found.used.0.nanoseconds())
         .number("rays per sample, used", Decimals(2), |found| found.used.0.rays)
         .estimated("ratio used / absent", Decimals(3), |found| Estimated::from(found.used.1))
+        .number("processes", Decimals(0), |found| found.used.1.count.map(|count| count as f64))
         .end();
-    [Block::figure("effects", plot)].into_iter().chain(generality(&found)).chain([table]).collect()
+    [Block::figure(stem, plot)].into_iter().chain(finding).chain([table]).collect()
 }
 
 fn generality(found: &[Priced<'_>]) -> Option<Block> {
-    let ranked = found.iter().filter(|found| !found.unused.1.is_partial);
-    let dearest = ranked.max_by(|a, b| a.unused.1.value.total_cmp(&b.unused.1.value))?;
-    let beyond = found.iter().filter(|found| found.unused.1.interval.low > 1.0);
-    let beyond: Vec<&str> = beyond.map(|found| found.price.effect.as_str()).collect();
+    let ratios = || found.iter().filter_map(|found| Some((found.price.effect.as_str(), found.unused_ratio()?)));
+    let ranked = ratios().filter(|(_, ratio)| !ratio.is_partial);
+    let (dearest, ratio) = ranked.max_by(|a, b| a.1.value.total_cmp(&b.1.value))?;
+    let beyond: Vec<&str> = ratios().filter(|(_, ratio)| ratio.interval.low > 1.0).map(|(effect, _)| effect).collect();
     let verdict = if beyond.is_empty() {
         "None of them costs more than the noise".to_string()
     } else {
         format!("These cost more than the noise: {}", beyond.join("; "))
     };
     Some(Block::finding(format!(
-        "An effect that is compiled into the kernel but not used by the scene makes a sample take {} times as long at most ({}). {verdict}.",
-        dearest.unused.1.in_words(3),
-        dearest.price.effect,
+        "An effect that is compiled into the {} kernel but not used by the scene makes a sample take {} times as long at most ({dearest}). {verdict}.",
+        found.first()?.price.absent.kernel,
+        ratio.in_words(3),
     )))
 }
 
@@ -163,7 +208,8 @@ struct Fit<'a> {
 
 /// Compares the rows of each scene in the largest profile with those in the smallest other one.
 fn fits<'a>(results: &'a Results, largest: &str) -> Vec<Fit<'a>> {
-    let groups = results.by(|row| (row.scene.as_str(), row.accelerator.as_str()));
+    let of_scalar = results.rows().filter(|row| kernel(row) == SCALAR);
+    let groups = group(of_scalar, |row| (row.scene.as_str(), row.accelerator.as_str()));
     let of_scene = |((scene, _), rows): ((&'a str, &str), Vec<&'a Row>)| {
         let mut by_profile = gathered(rows.into_iter().map(|row| (row.effects.as_str(), row)));
         let all = Times::of(&by_profile.remove(largest)?);
@@ -200,7 +246,7 @@ fn scenes(results: &Results, largest: &str) -> Vec<Block> {
     plot.guides = vec![(1.0, "no gain".to_string())];
     plot.subtitle = machine(results);
     let bars = bars(fits.iter().map(|fit| fit.ratio));
-    plot.caption = format!("Median of ratios within a repetition, same image. {bars}");
+    plot.caption = format!("Ratios within a repetition, same image. {bars}");
     let slower: Vec<&str> = fits.iter().filter(|fit| fit.ratio.interval.high < 1.0).map(|fit| fit.scene).collect();
     let faster = fits.iter().filter(|fit| fit.ratio.interval.low > 1.0).count();
     let never = if slower.is_empty() {

@@ -22,7 +22,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     );
     chart.subtitle = format!("{scene}, {}, {}", results.size(), results.run.machine.line());
     chart.caption =
-        "Bands: 95 % interval over seeds. Along a line the samples per pixel double from point to point.".to_string();
+        "Bands: 95 % interval over seeds. Along a line the samples per pixel double from point to point. Grey: slope -1/2."
+            .to_string();
+    chart.named_at_ends = true;
     let start = first.first().and_then(|contender| contender.points.first()).map(|point| (point.seconds, point.rmse));
     if let Some(curve) = start.and_then(|start| Curve::power_through(start, -0.5)) {
         chart.overlays.push(Overlay::guide("slope -1/2", curve));

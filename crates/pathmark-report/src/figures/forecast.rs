@@ -1,10 +1,11 @@
 //! Simulated schedules of the jobs measured here on other machines, and the errors of the predictions for this machine.
 
 use crate::experiment::read_calibration;
-use crate::forecasts::{forecast_blocks, prediction_blocks, predictions};
-use crate::measure::THREAD_PER_ROW;
+use crate::forecasts::{band, forecast_blocks, prediction_blocks, predictions};
+use crate::measure::{THREAD_PER_ROW, TraceFile};
+use crate::plot::number::{between, short};
 use crate::prelude::*;
-use crate::simulate::{Contender, Forecast, Hardware, contenders, forecast};
+use crate::simulate::{Contender, Forecast, Hardware, contenders, forecast, typical_costs};
 use std::num::NonZeroUsize;
 
 #[derive(Deserialize, Default)]
@@ -29,17 +30,18 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut contenders = contenders(&results.definition.lab, &read_calibration(&path)?);
     let mut blocks = prediction_blocks(&predictions(results, &contenders)?);
     let serial = results.rows().filter(|row| row.schedule.is_serial() && row.decomposition == decomposition);
-    if let Some(row) = Results::typical(&serial.collect::<Vec<&Row>>())
-        && let Some(trace) = results.trace(row)?
-    {
-        let costs = trace.costs_s();
+    let traces = results.traces_like_typical(&serial.collect::<Vec<&Row>>())?;
+    if let Some(trace) = traces.first() {
+        let costs: Vec<Vec<f64>> = traces.iter().map(TraceFile::costs_s).collect();
         contenders.push(Contender::longest_first());
-        let rows = forecast(&costs, &contenders, &cores, &Hardware::default());
-        let of = format!("{}x{}, {} spp, {} {decomposition}", row.width, row.height, row.spp, costs.len());
+        let rows = forecast(&costs, &contenders, &cores, &Hardware::default(), LEVEL);
+        let (settings, jobs) = (&trace.header.settings, costs[0].len());
+        let (spec, spp) = (&settings.spec, settings.spp);
+        let of = format!("{}x{}, {spp} spp, {jobs} {decomposition}", spec.width, spec.height);
         if decomposition == "rows" {
-            blocks.extend(claim(&rows, &costs));
+            blocks.extend(claim(&rows, &typical_costs(&costs)));
         }
-        blocks.extend(forecast_blocks(&rows, &format!("{}, {of}, simulated", row.scene), true, &[]));
+        blocks.extend(forecast_blocks(&rows, &format!("{}, {of}, simulated", settings.scene), true, &[]));
     }
     Ok(blocks)
 }
@@ -49,19 +51,23 @@ fn claim(rows: &[Forecast], costs: &[f64]) -> Option<Block> {
     let largest = rows.iter().map(|row| row.workers).max()?;
     let at = |cores: usize| rows.iter().find(|row| row.strategy == "thread-per-job" && row.workers == cores);
     let (two, sixteen, all) = (at(2)?, at(16)?, at(largest)?);
-    let best = rows.iter().filter(|row| row.workers == largest).max_by(|a, b| a.speedup.total_cmp(&b.speedup))?;
+    let best = rows.iter().filter(|row| row.workers == largest);
+    let best = best.max_by(|a, b| a.speedup.value.total_cmp(&b.speedup.value))?;
     let mean = costs.iter().sum::<f64>() / costs.len() as f64;
+    let told = |row: &Forecast| short(row.speedup.value, 3) + &between(Estimated::from(row.speedup).bar(), 3);
     Some(Block::finding(format!(
-        "{THREAD_PER_ROW} (a thread for each of {} rows) would be {:.2} times as fast as serial on 2 cores, {:.1} times on 16 and {:.0} times on {largest}, not {largest}: the longest row takes {:.2} times the mean ({:.2} times the \
-         median), which alone allows no more than {:.0}, and threads are started one after the other. The best of all schedules on {largest} cores, {}, reaches {:.0}.",
+        "Simulated, with intervals of {:.0} % confidence: {THREAD_PER_ROW} (a thread for each of {} rows) would be {} times as fast as serial on 2 cores, {} times on 16 and {} times on {largest}, not {largest}: the longest row takes {:.2} times the mean ({:.2} times the \
+         median), which alone allows no more than {:.0}, and threads are started one after the other. The best of all schedules on {largest} cores, {}, reaches {}. {}",
+        100.0 * LEVEL,
         costs.len(),
-        two.speedup,
-        sixteen.speedup,
-        all.speedup,
+        told(two),
+        told(sixteen),
+        told(all),
         all.longest_s / mean,
         all.longest_s / median(costs)?,
         costs.iter().sum::<f64>() / all.longest_s,
         best.strategy,
-        best.speedup,
+        told(best),
+        band(all.traces, all.calibrations),
     )))
 }

@@ -34,7 +34,8 @@ fn switches_per_second(row: &Row) -> Option<f64> {
 /// The rows of a generator with one strategy and number of threads.
 struct Line<'a> {
     sampler: &'a str,
-    spp: u32,
+    /// Workload and crew: generators of one name stand below each other.
+    name: String,
     crew: String,
     rows: Vec<&'a Row>,
     seconds: Estimated,
@@ -42,47 +43,45 @@ struct Line<'a> {
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Options { compare } = options(&results.definition, "generators")?;
-    let crews: BTreeSet<(usize, String)> =
-        results.by(|row| &row.schedule).into_keys().map(|schedule| (schedule.key.threads, crew(schedule))).collect();
     // Times of different images must not be mixed.
-    let by_sampler = results.by(|row| (row.sampler.as_str(), row.spp, (row.width, row.height)));
-    let (several_spp, several_sizes) = (
-        by_sampler.keys().map(|(_, spp, _)| spp).collect::<BTreeSet<_>>().len() > 1,
-        by_sampler.keys().map(|(.., size)| size).collect::<BTreeSet<_>>().len() > 1,
-    );
-    let name = |row: &Row| {
-        let spp = if several_spp { format!("{} spp", row.spp) } else { String::new() };
-        let size = if several_sizes { format!("{}x{}", row.width, row.height) } else { String::new() };
-        joined([row.sampler.clone(), spp, size])
-    };
-    let cells = by_sampler.into_iter().flat_map(|((sampler, ..), rows)| {
-        let label = name(rows[0]);
-        let by_crew = group(rows, |row| (row.schedule.key.threads, crew(&row.schedule)));
-        by_crew.into_iter().map(move |((_, crew), rows)| {
-            let any_sampler: Forget = |image, _| image.sampler.clear();
-            let seconds = Repeats::means(rows.iter().copied(), any_sampler, |row| row.makespan_s);
-            ((label.clone(), sampler, crew, rows), seconds)
-        })
+    let groups = results.by(|row| {
+        let threads = row.schedule.key.threads;
+        (row.spp, (row.width, row.height), threads, crew(&row.schedule), row.sampler.as_str())
     });
-    let (mut dots, mut lines): (Vec<DotRow>, _) = (Vec::new(), Vec::new());
-    for ((label, sampler, crew, rows), seconds) in medians(cells, results.stopping()) {
-        if dots.last().is_none_or(|row| row.name != label) {
-            dots.push(DotRow::new(label, vec![None; crews.len()]));
+    let differ = |count: usize| count > 1;
+    let several_spp = differ(groups.keys().map(|(spp, ..)| spp).collect::<BTreeSet<_>>().len());
+    let several_sizes = differ(groups.keys().map(|(_, size, ..)| size).collect::<BTreeSet<_>>().len());
+    let name = |spp: u32, (width, height): (u32, u32), crew: &str| {
+        let spp = if several_spp { format!("{spp} spp") } else { String::new() };
+        let size = if several_sizes { format!("{width}x{height}") } else { String::new() };
+        joined([spp, size, crew.to_string()])
+    };
+    let cells = groups.into_iter().map(|((spp, size, _, crew, sampler), rows)| {
+        let any_sampler: Forget = |image, _| image.sampler.clear();
+        let seconds = Repeats::means(rows.iter().copied(), any_sampler, |row| row.makespan_s);
+        ((sampler, name(spp, size, &crew), crew, rows), seconds)
+    });
+    let line = |((sampler, name, crew, rows), seconds)| Line { sampler, name, crew, rows, seconds };
+    let lines: Vec<Line<'_>> = medians(cells, results.stopping()).into_iter().map(line).collect();
+    let samplers: BTreeSet<&str> = lines.iter().map(|line| line.sampler).collect();
+    let mut dots: Vec<DotRow> = Vec::new();
+    for line in &lines {
+        if dots.last().is_none_or(|row| row.name != line.name) {
+            dots.push(DotRow::new(&line.name, vec![None; samplers.len()]));
         }
-        let places = dots.iter_mut().next_back().into_iter().flat_map(|row| row.dots.iter_mut().zip(&crews));
-        places.filter(|(_, (_, name))| *name == crew).for_each(|(dot, _)| *dot = Some(seconds.times(1e3).dot()));
-        lines.push(Line { sampler, spp: rows[0].spp, crew, rows, seconds });
+        let places = dots.iter_mut().next_back().into_iter().flat_map(|row| row.dots.iter_mut().zip(&samplers));
+        places.filter(|(_, sampler)| **sampler == line.sampler).for_each(|(dot, _)| *dot = Some(line.seconds.dot()));
     }
-    let plot = DotPlot::new("Time by random number generator", Axis::log("milliseconds"), dots);
-    let mut plot = plot.grouped(crews.iter().map(|(_, crew)| crew));
+    let plot = DotPlot::new("Time by random number generator", Axis::log("seconds"), dots);
+    let mut plot = plot.grouped(samplers);
     plot.subtitle = results.workload();
-    plot.caption = format!("Median. {}", bars(lines.iter().map(|line| line.seconds)));
+    plot.caption = bars(lines.iter().map(|line| line.seconds));
     let finding = compare.map_or(Ok(None), |compare| finding(results, &compare))?;
-    let table = Block::table("generators-table", "Generators: medians over repetitions", &lines)
+    let table = Block::table("generators-table", "Generators: typical values over repetitions", &lines)
         .column("generator", |line| line.sampler.to_string())
-        .column("samples per pixel", |line| line.spp.to_string())
+        .column("samples per pixel", |line| line.rows[0].spp.to_string())
         .column("threads", |line| line.crew.clone())
-        .estimated("median seconds", Decimals(4), |line| line.seconds)
+        .estimated("seconds", Decimals(4), |line| line.seconds)
         .number("switches per second", Decimals(0), |line| typical(&line.rows, switches_per_second))
         .number("CPU / wall", Decimals(2), |line| typical(&line.rows, |row| Some(row.cpu_s()? / row.makespan_s?)))
         .number("system share of CPU", Decimals(2), |line| {

@@ -1,6 +1,7 @@
 //! Efficiency against the size of a job, the size at which half is lost (METG), and the overhead of a job.
 
 use crate::analysis::metg::{Grain, HALF, Metg, metg};
+use crate::plot::Panels;
 use crate::prelude::*;
 use crate::serial::Serial;
 
@@ -66,32 +67,56 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let points = places.iter().map(|(job_s, efficiency)| efficiency.above(job_s * 1e6));
         Series::new(strategy, Look::nth(index), points.collect())
     };
-    let series = lines.into_iter().enumerate().map(line).collect();
+    let series: Vec<Series> = lines.into_iter().enumerate().map(line).collect();
     let grains = gathered(cells.into_iter().map(|((name, job_s), own)| (name, (job_s, own))));
     let grain = |(job_s, values): (f64, Vec<f64>)| -> Grain { (job_s, values) };
     let grains: BTreeMap<String, Vec<Grain>> =
         grains.into_iter().map(|(name, own)| (name, in_common(own).into_iter().map(grain).collect())).collect();
-    let mut chart = LineChart::new(
-        "Efficiency against the size of a job",
-        Axis::log("microseconds of work per job (serial)"),
-        Axis::linear("best serial time / (processors in use × time)").including([0.0, 1.0]),
-        series,
-    );
-    chart.subtitle = results.workload();
-    chart.caption = caption;
-    chart.overlays = vec![Overlay::guide("one half: METG(50 %)", Curve::Line { intercept: HALF, slope: 0.0 })];
+    let panels = panels(results, &series, &caption);
     let smallest = grains.iter().map(|(strategy, grains)| (strategy, in_words(&metg(grains, HALF, LEVEL))));
     let table = Block::table("metg", "Smallest job that keeps half of the processors", smallest)
         .column("strategy", |(strategy, _)| (*strategy).clone())
         .column("METG(50 %), microseconds", |(_, [value, _])| value.clone())
         .column("how sure", |(_, [_, remark])| remark.clone())
         .end();
-    let mut blocks = vec![Block::figure("granularity", chart), table, overhead(results, &baseline)];
+    let mut blocks = vec![Block::figure("granularity", panels), table, overhead(results, &baseline)];
     let Options { compare } = options(&results.definition, "granularity")?;
     if let Some([first, second]) = compare {
         blocks.extend(compared(results, &first, &second)?);
     }
     Ok(blocks)
+}
+
+/// All strategies in one chart, without intervals, and each in a small one with its intervals.
+fn panels(results: &Results, series: &[Series], caption: &str) -> Panels {
+    let points = || series.iter().flat_map(|series| &series.points);
+    let ends = |ends: fn(&Point) -> [f64; 2]| points().flat_map(ends).collect::<Vec<f64>>();
+    let sizes = ends(|point| [point.x, point.x]);
+    let heights = ends(|point| point.y_interval.map_or([point.y; 2], |(low, high)| [low, high]));
+    let x = Axis::log("microseconds of work per job (serial)").including(sizes);
+    let y = Axis::linear("best serial time / (processors in use × time)").including([0.0, 1.0]);
+    let half = || vec![Overlay::guide("one half: METG(50 %)", Curve::Line { intercept: HALF, slope: 0.0 })];
+    // The large chart names the axes.
+    let unnamed = |axis: &Axis| Axis { label: String::new(), ..axis.clone() };
+    let small = |series: &Series| {
+        let y = unnamed(&y).including(heights.iter().copied());
+        let mut chart = LineChart::new(&series.name, unnamed(&x), y, vec![series.clone()]);
+        chart.overlays = half();
+        chart
+    };
+    let others = if series.len() > 1 { series.iter().map(small).collect() } else { Vec::new() };
+    let title = "Efficiency against the size of a job";
+    let bare = |series: &Series| {
+        let mut bare = series.clone();
+        bare.points.iter_mut().for_each(|point| point.y_interval = None);
+        bare
+    };
+    let drawn = if others.is_empty() { series.to_vec() } else { series.iter().map(bare).collect() };
+    let mut main = LineChart::new(title, x.clone(), y.clone(), drawn);
+    main.subtitle = results.workload();
+    main.caption = caption.to_string();
+    main.overlays = half();
+    Panels { main, others }
 }
 
 /// Compares two strategies on the same pieces in the same repetition, from the smallest jobs to the largest.
@@ -145,7 +170,7 @@ fn in_words(found: &Metg) -> [String; 2] {
             let bracket = format!("between {} and {}", microseconds(between.0), microseconds(between.1));
             let interval = interval.map_or_else(String::new, |interval| {
                 let (low, high) = (microseconds(interval.low), microseconds(interval.high));
-                format!("; {low} to {high} ({:.0} %)", 100.0 * interval.level)
+                format!("; {low} to {high} ({:.1} %)", interval.percent())
             });
             let often = if *crossings > 1 { format!("; crosses one half {crossings} times") } else { String::new() };
             [microseconds(*seconds), format!("{bracket}{interval}{often}")]

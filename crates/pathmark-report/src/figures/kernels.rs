@@ -37,12 +37,22 @@ fn works<'a>(results: &'a Results, yardstick: &str) -> Result<Vec<Vec<Line<'a>>>
         results.by(|row| (&row.scene, &row.estimator, &row.sampler, &row.roulette, row.threads))
     {
         let measured = rows.into_iter().filter(|row| row.makespan_s.is_some());
-        let kernels = group(measured, |row| row.kernel_name());
+        let mut kernels = group(measured, |row| row.kernel_name());
+        // Short renders show the start of a kernel rather than its samples, so all kernels are compared at the most
+        // samples that the yardstick and another one have.
+        let spp = |rows: &[&Row]| rows.iter().map(|row| row.spp).collect::<BTreeSet<u32>>();
+        let of_base = kernels.get(yardstick).map(|rows| spp(rows)).unwrap_or_default();
+        let others = kernels.iter().filter(|(kernel, _)| *kernel != yardstick).flat_map(|(_, rows)| spp(rows));
+        let Some(most) = others.filter(|spp| of_base.contains(spp)).max() else { continue };
+        for rows in kernels.values_mut() {
+            rows.retain(|row| row.spp == most);
+        }
+        kernels.retain(|_, rows| !rows.is_empty());
         let Some(base) = kernels.get(yardstick) else { continue };
         let cells = kernels.iter().map(|(kernel, rows)| (kernel, &base[..], &rows[..]));
         let gains: BTreeMap<&String, Ratio> = time_ratios(cells, any_kernel, results.stopping())?.into_iter().collect();
         let line = |(kernel, rows): (&String, &Vec<&'a Row>)| {
-            let name = format!("{scene}: {estimator} + {sampler}");
+            let name = format!("{scene}: {estimator} + {sampler}, {most} spp");
             let ratio = gains.get(kernel).copied();
             Line { name, threads, kernel: kernel.clone(), rows: rows.clone(), ratio }
         };
@@ -82,10 +92,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 
 impl Line<'_> {
     fn rate(&self, count: fn(&Row) -> Option<u64>) -> Option<f64> {
-        // The rate is that of the longest renders, at the end of a curve.
-        let spp = self.rows.iter().map(|row| row.spp).max();
-        let longest = self.rows.iter().filter(|row| Some(row.spp) == spp);
-        typical(longest, |row| Some(count(row)? as f64 / row.makespan_s? / 1e6))
+        typical(&self.rows, |row| Some(count(row)? as f64 / row.makespan_s? / 1e6))
     }
 }
 
@@ -125,9 +132,13 @@ fn plot(results: &Results, works: &[Vec<Line<'_>>], yardstick: &str) -> DotPlot 
     let title = if has_devices { "What SIMD lanes and devices are worth" } else { "What SIMD lanes are worth" };
     let mut plot = DotPlot::new(title, axis, rows.collect()).grouped(kernels());
     plot.guides = vec![(1.0, format!("the {yardstick} kernel"))];
-    plot.subtitle = format!("one thread, {}", results.run.machine.line());
+    let line = results.run.machine.line();
+    plot.subtitle = std::iter::once(format!("one thread, {line}"))
+        .chain(results.run.devices.clone())
+        .collect::<Vec<_>>()
+        .join("; ");
     let shown = alone().flatten().filter(|line| line.kernel != yardstick);
     let bars = bars(shown.filter_map(|line| line.ratio));
-    plot.caption = format!("Median of ratios of renders of the same image. {bars}");
+    plot.caption = format!("Ratios of renders of the same image. {bars}");
     plot
 }

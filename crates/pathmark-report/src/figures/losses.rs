@@ -76,7 +76,7 @@ fn chart(results: &Results, found: &[Explained], worst: Option<(&Explained, (Par
         title,
         subtitle: results.workload(),
         caption: format!(
-            "Medians over repetitions of shares of workers × (makespan + merge){shared}. Serial work: seconds inside jobs of the serial run \
+            "Typical values over repetitions of shares of workers × (makespan + merge){shared}. Serial work: seconds inside jobs of the serial run \
              in the same repetition; if jobs took less time, its bar is shorter. The table has the intervals."
         ),
         axis: Axis::linear("share of workers × time, %").including([100.0]),

@@ -12,6 +12,7 @@ mod clamp_bias;
 mod clock;
 mod contact_sheet;
 mod cost_map;
+mod effect_steps;
 mod effects;
 mod equal_time;
 mod error_against_time;
@@ -80,7 +81,7 @@ macro_rules! entries {
 /// and its subject.
 pub const FIGURES: &[FigureEntry] = entries! {
     contact_sheet, "contact-sheet", NoOptions, "renders at growing spp beside the reference, with maps of their error";
-    rmse_against_spp, "rmse-against-spp", NoOptions, "error against samples per pixel, with the fitted slope";
+    rmse_against_spp, "rmse-against-spp", rmse_against_spp::Options, "error against samples per pixel, with the fitted slope";
     rmse_against_time, "rmse-against-time", rmse_against_time::Options, "error against seconds, a line per schedule";
     error_against_time, "error-against-time", NoOptions, "error against seconds, a line per estimator and sampler";
     price_list, "price-list", price_list::Options, "seconds to each accuracy, and predictions of later points from earlier ones";

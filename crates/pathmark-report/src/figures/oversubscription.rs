@@ -38,9 +38,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         ((key, rows[0].jobs), seconds)
     });
     let times = medians(cells, results.stopping());
-    let caption = format!("Median. {}", bars(times.iter().map(|(_, time)| *time)));
+    let caption = bars(times.iter().map(|(_, time)| *time));
     for (((schedule, series, _), jobs), time) in times {
-        let time = time.times(1e3);
         let threads = schedule.key.threads;
         if schedule.key.decomposition.starts_with(GRID) {
             let crew = if threads == jobs { "a thread for each section" } else { "a thread for each processor" };
@@ -53,7 +52,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     }
     let chart = |title: &str, axis: Axis, lines: Lines| {
         let ticks: Vec<f64> = lines.values().flatten().map(|point| point.x).collect();
-        let y = Axis::linear("milliseconds").including([0.0]);
+        let y = Axis::linear("seconds").including([0.0]);
         let mut chart = LineChart::new(title, axis.ticks_at(ticks), y, Series::by_name(lines));
         chart.subtitle = results.workload();
         chart.caption.clone_from(&caption);

@@ -1,6 +1,7 @@
 //! The price list: samples and seconds to each accuracy, and predictions of later points from earlier ones.
 
 use crate::contenders::{Check, Contender, contenders};
+use crate::plot::Dot;
 use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
@@ -24,7 +25,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     };
     let seconds = |contender: &Contender, goal: Positive| Some(contender.renderer.price(goal.0)?.seconds);
     let dots = |contender: &Contender| {
-        goals.iter().map(|goal| Some(Estimated::from(seconds(contender, *goal)?).dot())).collect()
+        let dot = |goal: &Positive| {
+            Some(Dot { hollow: is_beyond(contender, goal.0), ..Estimated::from(seconds(contender, *goal)?).dot() })
+        };
+        goals.iter().map(dot).collect()
     };
     let rows = all.iter().map(|contender| DotRow::new(name(contender), dots(contender))).collect();
     let plot = DotPlot::new("What each accuracy costs", Axis::log("seconds of rendering"), rows);
@@ -61,15 +65,20 @@ fn least_error(contender: &Contender) -> Option<f64> {
     contender.points.last().map(|point| point.rmse)
 }
 
+/// Whether no measured point has so small an error.
+fn is_beyond(contender: &Contender, goal: f64) -> bool {
+    least_error(contender).is_some_and(|least| goal < least)
+}
+
 /// The number of prices beyond the measured samples, in words.
 fn extrapolated(all: &[&Contender], goals: &[Positive]) -> String {
     let prices = || all.iter().flat_map(|contender| goals.iter().map(move |goal| (contender, goal.0)));
-    let beyond = prices().filter(|(contender, goal)| least_error(contender).is_some_and(|least| *goal < least)).count();
+    let beyond = prices().filter(|(contender, goal)| is_beyond(contender, *goal)).count();
     let count = prices().count();
     match beyond {
         0 => "Every price lies within the measured samples.".to_string(),
         _ => format!(
-            "Extrapolated beyond the measured samples: {beyond} of {count} prices, those below the least measured RMSE (table)."
+            "Hollow: extrapolated beyond the measured samples, {beyond} of {count} prices, those below the least measured RMSE (table)."
         ),
     }
 }
@@ -90,4 +99,28 @@ fn checked(checks: &[(&Contender, Option<Check>)]) -> Option<Block> {
         "Half of the seeds, up to a quarter of the samples, predict RMSE and seconds of the other half at the end of its curves. At worst the RMSE came out {error:+.1} % ({by_error}) and the \
          seconds {time:+.1} % ({by_time}) of what was predicted. Half of an error costs four times the seconds with independent samples."
     )))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::figures::blocks;
+    use crate::measure::Record;
+    use crate::tests::{results, row, svg};
+
+    /// MSE = 1/n up to 16 samples: an RMSE of .5 lies within the curve, one of .2 beyond it.
+    #[test]
+    fn extrapolated_prices_are_hollow() {
+        let mut rows = Vec::new();
+        for (seed, spp) in (1..=3_u32).flat_map(|seed| [1, 4, 16].map(|spp| (seed, spp))) {
+            let mse = (1.0 + 0.01 * f64::from(seed)) / f64::from(spp);
+            let makespan_s = Some(f64::from(spp) * (1.0 + 0.01 * f64::from(seed)));
+            rows.push(Record { seed: seed.into(), spp, mse: Some(mse), makespan_s, ..row() });
+        }
+        let figure = |goals: &str| {
+            let options = format!("[figure.price-list]\ngoals = {goals}");
+            svg(&blocks(&results(&["price-list"], &options, rows.clone()).unwrap()).unwrap(), "price-list")
+        };
+        assert!(figure("[0.5, 0.2]").contains("Hollow: extrapolated beyond the measured samples, 1 of 2 prices"));
+        assert!(figure("[0.5]").contains("Every price lies within the measured samples"));
+    }
 }

@@ -2,6 +2,7 @@
 
 use crate::cluster::MessageCosts;
 use crate::experiment::{MESSAGES, read_calibration};
+use crate::measure::TraceFile;
 use crate::prelude::*;
 use crate::rank_forecasts::{
     self, RankPlan, rank_forecast, rank_forecast_blocks, rank_prediction_blocks, rank_predictions,
@@ -39,18 +40,19 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let contenders = contenders(lab, &read_calibration(&calibration)?);
     let messages = rank_forecasts::messages(&MessageCosts::read(&messages)?);
     let mut blocks = rank_prediction_blocks(&rank_predictions(results, &contenders, messages)?);
-    if let Some(trace) = results.largest_serial_trace()? {
+    let traces = results.largest_serial_traces()?;
+    if let Some(trace) = traces.first() {
         let rules = rules.iter().map(|rule| lab.rank_rule("rules", rule)).collect::<Result<Vec<_>>>()?;
         let hardware = Hardware::default();
         let strategies = &[strategy][..];
         let plan = RankPlan { rules: &rules, strategies, ranks: &ranks, threads: &threads, messages, hardware };
-        let costs = trace.costs_s();
+        let costs: Vec<Vec<f64>> = traces.iter().map(TraceFile::costs_s).collect();
         let settings = &trace.header.settings;
         let (spec, pieces) = (&settings.spec, &settings.decomposition);
         let pixels = f64::from(spec.width) * f64::from(spec.height);
         let rows = rank_forecast(&plan, &contenders, &costs, pixels);
-        let of = format!("{}x{}, {} spp, {} {pieces}", spec.width, spec.height, settings.spp, costs.len());
-        blocks.extend(rank_forecast_blocks(&rows, &format!("{}, {of}", settings.scene), strategies));
+        let of = format!("{}x{}, {} spp, {} {pieces}", spec.width, spec.height, settings.spp, costs[0].len());
+        blocks.extend(rank_forecast_blocks(&rows, &format!("{}, {of}, simulated", settings.scene), strategies));
     }
     Ok(blocks)
 }

@@ -3,8 +3,59 @@
 use crate::analysis::jackknife::SeedCurves;
 use crate::analysis::mse::over_seeds;
 use crate::analysis::slope::power_law;
-use crate::contenders::{curves_of_seeds, one_per_seed, root_of_mean};
+use crate::contenders::{curves_by, one_per_seed, root_of_mean};
 use crate::prelude::*;
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct Options {
+    /// The values whose error is drawn.
+    values: Values,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Values {
+    /// Linear radiance.
+    #[default]
+    Linear,
+    /// Display values: clamped to 0 to 1, gamma 2.2.
+    Display,
+}
+
+impl Values {
+    fn mse(self) -> fn(&Row) -> Option<f64> {
+        match self {
+            Self::Linear => |row| row.mse,
+            Self::Display => |row| row.mse_display,
+        }
+    }
+
+    fn other(self) -> Self {
+        match self {
+            Self::Linear => Self::Display,
+            Self::Display => Self::Linear,
+        }
+    }
+
+    fn heading(self) -> &'static str {
+        match self {
+            Self::Linear => "RMSE, linear",
+            Self::Display => "RMSE, display",
+        }
+    }
+
+    fn axis(self) -> &'static str {
+        match self {
+            Self::Linear => "RMSE, linear radiance",
+            Self::Display => "RMSE, display values (0 to 1, gamma 2.2)",
+        }
+    }
+}
+
+/// A line has a slope from this many numbers of samples on: fewer hardly show whether the points lie on a line. Few
+/// seeds need no such limit, because Student's quantile widens their interval.
+const FEWEST_POINTS: usize = 4;
 
 /// The error of an image at some number of samples.
 struct Line {
@@ -12,26 +63,29 @@ struct Line {
     spp: u32,
     seeds: usize,
     error: Estimated,
-    /// RMSE of display values.
-    shown: f64,
+    /// RMSE of the values that are not drawn.
+    other: f64,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
+    let Options { values } = options(&results.definition, "rmse-against-spp")?;
     let (mut series, mut overlays, mut findings, mut lines) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (index, (name, rows)) in results.by(|row| results.image_name(row)).into_iter().enumerate() {
         let at_spp = group(rows.iter().copied(), |row| row.spp).into_iter().filter_map(|(spp, rows)| {
-            let mse = one_per_seed(&rows, |row| row.mse);
+            let mse = one_per_seed(&rows, values.mse());
             let interval = over_seeds(&mse, LEVEL).map(|error| error.rmse.interval);
             let error = Estimated { count: Some(mse.len()), ..Estimated::of(root_of_mean(&mse), interval) };
-            let shown = root_of_mean(&one_per_seed(&rows, |row| row.mse_display));
-            (!mse.is_empty()).then(|| Line { image: name.clone(), spp, seeds: mse.len(), error, shown })
+            let other = root_of_mean(&one_per_seed(&rows, values.other().mse()));
+            (!mse.is_empty()).then(|| Line { image: name.clone(), spp, seeds: mse.len(), error, other })
         });
         let own: Vec<Line> = at_spp.collect();
-        let curves: Vec<_> = curves_of_seeds(&rows).into_iter().map(|(curve, _)| curve).collect();
-        if let Some(fit) = SeedCurves::of_errors(&curves).and_then(|curves| power_law(&curves, LEVEL)) {
+        let curves: Vec<_> = curves_by(&rows, values.mse()).into_iter().map(|(curve, _)| curve).collect();
+        let fit = SeedCurves::of_errors(&curves).and_then(|curves| power_law(&curves, LEVEL));
+        if let Some(fit) = fit.filter(|_| own.len() >= FEWEST_POINTS) {
             let (slope, interval) = (fit.exponent.value, fit.exponent.interval);
             let curve = Curve::Power { scale: libm::exp(fit.log_scale), exponent: slope };
-            let label = format!("fit: slope {slope:.3}\n95 % {:.3} to {:.3}", interval.low, interval.high);
+            let seeds = counted(fit.seeds, "seed");
+            let label = format!("fit: slope {slope:.3}, {seeds}\n95 % {:.3} to {:.3}", interval.low, interval.high);
             overlays.push(Overlay::fit(label, curve, index));
             let verdict = if interval.contains(-0.5) { "contains" } else { "does not contain" };
             findings.push(Block::finding(format!(
@@ -61,7 +115,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut chart = LineChart::new(
         "Error against samples per pixel",
         Axis::log("samples per pixel").ticks_at(results.rows().map(|row| f64::from(row.spp))),
-        Axis::log("RMSE, linear radiance"),
+        Axis::log(values.axis()),
         series,
     );
     chart.subtitle = results.workload();
@@ -73,8 +127,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("image", |line| line.image.clone())
         .column("spp", |line| line.spp.to_string())
         .column("seeds", |line| line.seeds.to_string())
-        .estimated("RMSE, linear", Decimals(5), |line| line.error)
-        .number("RMSE, display", Decimals(5), |line| line.shown)
+        .estimated(values.heading(), Decimals(5), |line| line.error)
+        .number(values.other().heading(), Decimals(5), |line| line.other)
         .end();
     Ok([Block::figure("rmse-against-spp", chart)].into_iter().chain(findings).chain([table]).collect())
 }

@@ -1,104 +1,298 @@
-//! The cost of accuracy in time: error against seconds, a line for each schedule. All schedules of one spp render the
-//! same image with the same error; a better schedule moves the curve to the left.
+//! The cost of accuracy in time: error against seconds, a panel for each scene and a line for each way to render it. All
+//! schedules of one spp render the same image with the same error; a better schedule moves the line to the left.
+//!
+//! The units of an error are seeds, those of a time are processes. A price is the place where a line crosses an error; it
+//! is interpolated between measured points and never extrapolated.
 
-use crate::contenders::one_per_seed;
+use crate::analysis::jackknife::Curve as ErrorCurve;
+use crate::analysis::measured_price::{Crossing, MeasuredPrice, Timed};
+use crate::analysis::mse::over_seeds;
+use crate::contenders::{curves_of_seeds, one_per_seed, root_of_mean};
+use crate::plot::Panels;
 use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Options {
-    /// The RMSE whose price is extrapolated, in linear radiance.
-    goal: Option<Positive>,
+    /// The RMSEs to price, in linear radiance.
+    goals: Option<Vec<Positive>>,
 }
 
-/// An image's series and its schedule.
-type Key<'a> = (String, &'a Schedule);
+/// Lines of more names than this have a legend.
+const MOST_NAMES: usize = 10;
 
-/// Time and error of a schedule at some number of samples.
-struct Place<'a> {
-    key: Key<'a>,
-    /// Scene and size: prices in others are not compared with its price.
-    setting: (&'a str, u32, u32),
+/// Scene and size: times in others are not compared with its times.
+type Setting<'a> = (&'a str, u32, u32);
+
+/// A way to render a scene.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord)]
+struct Renderer<'a> {
+    setting: Setting<'a>,
+    /// The properties of its images that differ within the scene.
+    image: String,
+    schedule: &'a Schedule,
+}
+
+impl<'a> Renderer<'a> {
+    fn of(results: &Results, row: &'a Row) -> Self {
+        let setting = (row.scene.as_str(), row.width, row.height);
+        Self { setting, image: results.series_name_in_scene(row), schedule: &row.schedule }
+    }
+
+    fn name(&self) -> String {
+        joined([self.image.clone(), self.schedule.label()])
+    }
+
+    /// The property that dashes stand for.
+    fn threads(&self) -> usize {
+        self.schedule.key.threads
+    }
+}
+
+struct Line<'a> {
+    of: Renderer<'a>,
+    points: Vec<MeasuredPoint>,
+    /// The error curve of each seed.
+    seeds: Vec<ErrorCurve>,
+}
+
+struct MeasuredPoint {
     spp: u32,
     seconds: Estimated,
-    mse: f64,
+    rmse: Estimated,
 }
 
-impl Place<'_> {
+impl MeasuredPoint {
     fn point(&self) -> Point {
-        let at = Point::new(self.seconds.value, self.mse.sqrt()).with_x(self.seconds.bar());
+        let at = Point::new(self.seconds.value, self.rmse.value).with_x(self.seconds.bar()).with_y(self.rmse.bar());
         Point { hollow: self.seconds.is_partial, ..at }
     }
+}
 
-    fn price(&self) -> f64 {
-        self.mse * self.seconds.value
+impl Line<'_> {
+    fn price(&self, goal: f64) -> Option<MeasuredPrice> {
+        let times = self.points.iter().filter(|point| !point.seconds.is_partial).map(|point| Timed {
+            spp: f64::from(point.spp),
+            seconds: point.seconds.value,
+            interval: point.seconds.interval.filter(|interval| interval.level >= LEVEL),
+        });
+        MeasuredPrice::of(&self.seeds, &times.collect::<Vec<Timed>>(), goal)
     }
+
+    /// The factor on the seconds that halves the error, from the line's ends.
+    fn cost_of_half(&self) -> Option<f64> {
+        let (first, last) = (self.points.first()?, self.points.last()?);
+        let octaves = libm::log2(first.rmse.value / last.rmse.value);
+        let longer = libm::log2(last.seconds.value / first.seconds.value);
+        Some(libm::exp2(longer / octaves)).filter(|factor| octaves > 0.5 && factor.is_finite())
+    }
+}
+
+/// The lines with an error, by scene and name.
+fn lines(results: &Results) -> Vec<Line<'_>> {
+    let with_error = results.rows().filter(|row| row.mse.is_some());
+    let groups = group(with_error, |row| Renderer::of(results, row));
+    let cells = groups.iter().flat_map(|(of, rows)| {
+        let by_spp = group(rows.iter().copied(), |row| row.spp).into_iter();
+        by_spp.map(move |(spp, rows)| {
+            let mse = one_per_seed(&rows, |row| row.mse);
+            let interval = over_seeds(&mse, LEVEL).map(|error| error.rmse.interval);
+            let rmse = Estimated { count: Some(mse.len()), ..Estimated::of(root_of_mean(&mse), interval) };
+            ((of, spp, rmse), Repeats::of_rows(rows, |row| row.rendering_s()))
+        })
+    });
+    let points = along(cells, |(of, ..)| *of, results.stopping()).into_iter();
+    let points = points.filter(|((.., rmse), _)| rmse.value > 0.0);
+    let points = gathered(points.map(|((of, spp, rmse), seconds)| (of, MeasuredPoint { spp, seconds, rmse })));
+    let seeds = |of| curves_of_seeds(&groups[of]).into_iter().map(|(curve, _)| curve).collect();
+    points.into_iter().map(|(of, points)| Line { of: of.clone(), points, seeds: seeds(of) }).collect()
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let goal = options::<Options>(&results.definition, "rmse-against-time")?.goal.map_or(0.01, |goal| goal.0);
-    let groups = results.by(|row| ((results.series_name(row), &row.schedule), row.spp));
-    let cells = groups.into_iter().map(|((key, spp), rows)| {
-        let mse = one_per_seed(&rows, |row| row.mse);
-        let mse = mse.iter().sum::<f64>() / mse.len() as f64;
-        let setting = (rows[0].scene.as_str(), rows[0].width, rows[0].height);
-        ((key, setting, spp, mse), Repeats::of_rows(rows, |row| row.rendering_s()))
-    });
-    let places = along(cells, |(key, ..)| key.clone(), results.stopping()).into_iter();
-    let places = places.map(|((key, setting, spp, mse), seconds)| Place { key, setting, spp, seconds, mse });
-    let places = places.filter(|place| place.mse > 0.0);
-    let places: Vec<Place<'_>> = places.collect();
-    let lines = gathered(places.iter().map(|place| (&place.key, place.point())));
-    let colour = |key: &Key<'_>| format!("{}{}", key.0, key.1.name);
-    let mut colours: Vec<String> = lines.keys().map(|key| colour(key)).collect();
-    colours.dedup();
-    let dashes: BTreeSet<usize> = lines.keys().map(|(_, schedule)| schedule.key.threads).collect();
-    let series = lines.into_iter().map(|(key, points)| {
-        let dash = dashes.iter().position(|threads| *threads == key.1.key.threads).unwrap_or(0);
-        let colour = colours.iter().position(|own| *own == colour(key)).unwrap_or(0);
-        Series::new(label(key), Look::of(colour, dash), points)
-    });
-    let mut chart = LineChart::new(
-        "What accuracy costs in time",
-        Axis::log("wall seconds"),
-        Axis::log("RMSE, linear radiance"),
-        series.collect(),
-    );
-    chart.subtitle = results.workload();
-    let bars = bars(places.iter().map(|place| place.seconds));
-    chart.caption = format!("Points along a line: growing samples per pixel. {bars}");
-    let ranked = places.iter().filter(|place| !place.seconds.is_partial);
-    let by_setting = gathered(ranked.map(|place| (place.setting, (&place.key, place.price())))).into_values();
-    let price = by_setting.rev().max_by_key(Vec::len).and_then(|prices| price_finding(&gathered(prices), goal));
-    let table = Block::table("rmse-against-time", "Price of accuracy by schedule", &places)
-        .column("schedule", |place| label(&place.key))
-        .column("spp", |place| place.spp.to_string())
-        .estimated("median seconds", Decimals(4), |place| place.seconds)
-        .number("RMSE, linear", Decimals(5), |place| place.mse.sqrt())
-        .number("MSE x seconds", Significant(4), |place| place.price())
-        .end();
-    Ok([Block::figure("rmse-against-time", chart)].into_iter().chain(price).chain([table]).collect())
-}
-
-/// If the RMSE times the root of the time is constant along a line, one value prices every accuracy: MSE times seconds.
-fn price_finding(prices: &BTreeMap<&Key<'_>, Vec<f64>>, goal: f64) -> Option<Block> {
-    let spread = |values: &Vec<f64>| {
-        let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        most / values.iter().copied().fold(f64::INFINITY, f64::min)
+    let goals = options::<Options>(&results.definition, "rmse-against-time")?.goals;
+    let goals = goals.unwrap_or_else(|| [0.1, 0.05, 0.02, 0.01].map(Positive).to_vec());
+    let lines = lines(results);
+    let by_setting = gathered(lines.iter().map(|line| (line.of.setting, line)));
+    let Some((main, _)) = by_setting.iter().rev().max_by_key(|(_, lines)| lines.len()) else {
+        let text = "There is no error against time: it takes errors against references.";
+        return Ok(vec![Block::notice(text)]);
     };
-    let widest = prices.values().map(spread).reduce(f64::max)?;
-    let costs = || prices.iter().filter_map(|(key, values)| Some((key, median(values)? / (goal * goal))));
-    let (cheapest, least) = costs().min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let (dearest, most) = costs().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    Some(Block::finding(format!(
-        "MSE times seconds is the price of accuracy. Along each line its largest value is at most {widest:.2} times its smallest. \
-         Extrapolated with its median, an RMSE of {goal} costs about {least:.0} s with {} and {most:.0} s with {}; half that \
-         RMSE costs four times as much. These seconds were not measured.",
-        label(cheapest),
-        label(dearest),
-    )))
+    let of_image: BTreeSet<(Setting<'_>, &str, usize)> =
+        lines.iter().map(|line| (line.of.setting, line.of.image.as_str(), line.of.threads())).collect();
+    // Where dashes tell the schedules of an image apart, they have one colour.
+    let is_by_image = of_image.len() == lines.len();
+    let colour = |line: &Line<'_>| {
+        let schedule = if is_by_image { "" } else { line.of.schedule.name.as_str() };
+        (line.of.image.clone(), schedule.to_string())
+    };
+    let colours: BTreeSet<(String, String)> = lines.iter().map(colour).collect();
+    let dashes: BTreeSet<usize> = lines.iter().map(|line| line.of.threads()).collect();
+    let series = |line: &&Line<'_>| {
+        let dash = dashes.iter().position(|threads| *threads == line.of.threads()).unwrap_or(0);
+        let colour = colours.iter().position(|own| *own == colour(line)).unwrap_or(0);
+        Series::new(line.of.name(), Look::of(colour, dash), line.points.iter().map(MeasuredPoint::point).collect())
+    };
+    let chart = |lines: &[&Line<'_>]| {
+        let axes = (Axis::log("wall seconds"), Axis::log("RMSE, linear radiance"));
+        LineChart::new("", axes.0, axes.1, lines.iter().map(series).collect())
+    };
+    let words = |line: &&&Line<'_>| {
+        let word = |point: &MeasuredPoint| (point.point(), point.spp.to_string());
+        line.points.iter().map(word).collect::<Vec<_>>()
+    };
+    let slowest = |lines: &[&Line<'_>]| {
+        let end = |line: &Line<'_>| line.points.first().map_or(0.0, |point| point.rmse.value * point.seconds.value);
+        lines.iter().max_by(|a, b| end(a).total_cmp(&end(b))).map(|line| words(&line)).unwrap_or_default()
+    };
+    let shown = &by_setting[main];
+    let seeds = lines.iter().flat_map(|line| line.points.iter().filter_map(|point| point.rmse.count));
+    let seeds: BTreeSet<usize> = seeds.collect();
+    let seeds = seeds.first().map_or_else(String::new, |least| counted(*least, "seed"));
+    let mut first = LineChart {
+        title: title(&lines),
+        subtitle: format!("{}, {}x{}, {}", main.0, main.1, main.2, results.run.machine.line()),
+        caption: format!(
+            "Numbers beside points: samples per pixel. Vertical: RMSE over seeds, at least {seeds}, 95 % confidence. Horizontal: time over processes. {}",
+            bars(lines.iter().flat_map(|line| line.points.iter().map(|point| point.seconds)))
+        ),
+        words: slowest(shown),
+        ..chart(shown)
+    };
+    first.named_at_ends = first.series.len() <= MOST_NAMES;
+    let others = by_setting.iter().filter(|(setting, _)| *setting != main);
+    let others = others.map(|((scene, width, height), lines)| LineChart {
+        title: format!("{scene}, {width}x{height}"),
+        ..chart(lines)
+    });
+    let others: Vec<LineChart> = others.collect();
+    let figure = if others.is_empty() {
+        Block::figure("rmse-against-time", first)
+    } else {
+        Block::figure("rmse-against-time", Panels { main: first, others })
+    };
+    let finding = finding(&by_setting[main], &goals).map(Block::finding);
+    Ok([figure].into_iter().chain(finding).chain([prices(&lines, &goals), points(&lines)]).collect())
 }
 
-fn label((series, schedule): &Key<'_>) -> String {
-    joined([series.clone(), schedule.label()])
+/// The result: the factor on the seconds that halves the error.
+fn title(lines: &[Line<'_>]) -> String {
+    let mut factors: Vec<f64> = lines.iter().filter_map(Line::cost_of_half).collect();
+    factors.sort_by(f64::total_cmp);
+    match factors.as_slice() {
+        [] => "What accuracy costs in time".to_string(),
+        [least, .., most] if format!("{least:.1}") != format!("{most:.1}") => {
+            format!("Half the error costs {least:.1} to {most:.1} times the seconds")
+        }
+        [factor, ..] => format!("Half the error costs {factor:.1} times the seconds"),
+    }
+}
+
+/// Compares the prices of the smallest goal that most lines of a scene have reached.
+fn finding(lines: &[&Line<'_>], goals: &[Positive]) -> Option<String> {
+    let measured = |goal: f64| {
+        let price = |line: &&Line<'_>| match line.price(goal) {
+            Some(MeasuredPrice::Between(found)) => Some((line.of.name(), found)),
+            _ => None,
+        };
+        (goal, lines.iter().filter_map(price).collect::<Vec<_>>())
+    };
+    let falling = goals.iter().map(|goal| measured(goal.0));
+    let (goal, found) = falling.max_by(|a, b| a.1.len().cmp(&b.1.len()).then(b.0.total_cmp(&a.0)))?;
+    let cheapest = found.iter().min_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds))?;
+    let dearest = found.iter().max_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds))?;
+    let told = |(name, found): &(String, Crossing)| {
+        let interval = found.interval.map_or_else(String::new, |interval| format!(" ({})", with_level(&interval, 3)));
+        format!("{:.3} s{interval} with {name}", found.seconds)
+    };
+    let (scene, ..) = lines.first()?.of.setting;
+    Some(format!("{scene}: an RMSE of {goal} costs {} and {}, both measured.", told(cheapest), told(dearest)))
+}
+
+/// The price of each goal along each line.
+fn prices(lines: &[Line<'_>], goals: &[Positive]) -> Block {
+    let all = lines.iter().flat_map(|line| goals.iter().map(move |goal| (line, goal.0, line.price(goal.0))));
+    let seconds = |price: &Option<MeasuredPrice>| match price {
+        Some(MeasuredPrice::Between(found)) => Some(Estimated::of(found.seconds, found.interval)),
+        _ => None,
+    };
+    let place = |price: &Option<MeasuredPrice>| match price {
+        Some(MeasuredPrice::Between(Crossing { between: [low, high], .. })) => format!("between {low} and {high} spp"),
+        Some(MeasuredPrice::BeforeFirst(at)) => {
+            format!("not measured: reached before {} spp, {:.4} s", at.spp, at.seconds)
+        }
+        Some(MeasuredPrice::BeyondLast(at)) => {
+            format!("not measured: not reached at {} spp, {:.4} s", at.spp, at.seconds)
+        }
+        None => "not measured".to_string(),
+    };
+    Block::table("accuracy-prices", "Seconds to an error, interpolated between measured points", all)
+        .column("scene", |(line, ..)| line.of.setting.0.to_string())
+        .column("renderer", |(line, ..)| line.of.name())
+        .number("RMSE", Significant(3), |(_, goal, _)| *goal)
+        .estimated("seconds", Significant(4), |(.., price)| seconds(price))
+        .number("seeds", Decimals(0), |(line, ..)| line.seeds.len() as f64)
+        .column("measured", |(.., price)| place(price))
+        .end()
+}
+
+fn points(lines: &[Line<'_>]) -> Block {
+    let all = lines.iter().flat_map(|line| line.points.iter().map(move |point| (line, point)));
+    let count = |told: &Estimated| told.count.map(|count| count as f64);
+    Block::table("rmse-against-time", "Error and time of each point", all)
+        .column("scene", |(line, _)| line.of.setting.0.to_string())
+        .column("schedule", |(line, _)| line.of.name())
+        .column("spp", |(_, point)| point.spp.to_string())
+        .estimated("median seconds", Decimals(4), |(_, point)| point.seconds)
+        .number("processes", Decimals(0), |(_, point)| count(&point.seconds))
+        .estimated("RMSE, linear", Decimals(5), |(_, point)| point.rmse)
+        .number("seeds", Decimals(0), |(_, point)| count(&point.rmse))
+        .number("MSE x seconds", Significant(4), |(_, point)| point.rmse.value * point.rmse.value * point.seconds.value)
+        .end()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::figures::blocks;
+    use crate::measure::Record;
+    use crate::tests::{results, row, svg, table};
+
+    /// RMSE = .6 / sqrt(n) and t = .02 n on one thread, half of that on two: an RMSE of .1 takes 36 samples, and errors
+    /// below .6 / sqrt(64) were not reached.
+    fn closed_form() -> Vec<Record> {
+        let mut rows = Vec::new();
+        for (spp, seed) in [8, 16, 32, 64].into_iter().flat_map(|spp| (1..=9_u32).map(move |seed| (spp, seed))) {
+            // Seeds from 4 % below to 4 % above.
+            let factor = 1.0 + 0.01 * (f64::from(seed) - 5.0);
+            let (mse, seconds) = (0.36 * factor / f64::from(spp), 0.02 * f64::from(spp));
+            let serial = Record { spp, seed: seed.into(), mse: Some(mse), makespan_s: Some(seconds), ..row() };
+            let parallel =
+                Record { strategy: "pool".to_string(), threads: 2, makespan_s: Some(0.5 * seconds), ..serial.clone() };
+            let elsewhere = Record { scene: "sky".to_string(), scene_hash: "1".to_string(), ..serial.clone() };
+            rows.extend([serial, parallel, elsewhere]);
+        }
+        rows
+    }
+
+    #[test]
+    fn prices_are_interpolated_and_never_extrapolated() {
+        let results = results(&["rmse-against-time"], "", closed_form()).unwrap();
+        let blocks = blocks(&results).unwrap();
+        let prices: Vec<Vec<String>> = table(&blocks).rows().collect();
+        let of = |scene: &str, renderer: &str, goal: &str| {
+            let found = prices.iter().find(|row| row[0] == scene && row[1].contains(renderer) && row[2] == goal);
+            found.unwrap_or_else(|| panic!("{scene} {renderer} {goal}: {prices:?}"))
+        };
+        for (renderer, seconds) in [("serial", 0.72), ("pool", 0.36)] {
+            let own = of("cornell", renderer, "0.1");
+            let value: f64 = own[3].split(',').next().unwrap().parse().unwrap();
+            assert!((value / seconds - 1.0).abs() < 2e-3, "{own:?}");
+            assert!(own[3].contains("to") && own[4] == "9" && own[5] == "between 32 and 64 spp", "{own:?}");
+            let beyond = of("cornell", renderer, "0.05");
+            assert!(beyond[5].starts_with("not measured: not reached at 64 spp"), "{beyond:?}");
+        }
+        let figure = svg(&blocks, "rmse-against-time");
+        assert!(figure.contains("Half the error costs 4.0 times the seconds"));
+        // Both scenes have a panel, and the points of one line tell their samples.
+        assert!(figure.contains("sky, 8x6") && figure.contains("\n16\n") && figure.contains("\n64\n"));
+    }
 }

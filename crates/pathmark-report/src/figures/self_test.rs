@@ -14,7 +14,7 @@ fn compared(rows: &[&Row]) -> Vec<Estimated> {
     let mut timed: Vec<(u32, f64)> = rows.iter().filter_map(|row| Some((row.repetition, row.makespan_s?))).collect();
     timed.sort_by_key(|(repetition, _)| *repetition);
     let ratios: Vec<f64> = timed.chunks_exact(2).map(|pair| pair[0].1 / pair[1].1).collect();
-    ratios.chunks_exact(PAIRS).filter_map(|pairs| Estimated::median(pairs, Stopping::Fixed)).collect()
+    ratios.chunks_exact(PAIRS).filter_map(|pairs| Estimated::typical(pairs, Stopping::Fixed)).collect()
 }
 
 /// Whether the interval contains 1, the true ratio.

@@ -11,12 +11,17 @@ use crate::words::hollow;
 /// A chart with more lines than this is unreadable, so strategies become named rows instead.
 const MOST_LINES: usize = 8;
 
+/// The mark of schedules that are not told apart from the fastest one.
+const OPEN: &str = "≈";
+
 /// The threads axis is linear up to this many threads.
 const FEW_THREADS: f64 = 16.0;
 
 /// The speedups and the data to explain them.
 struct Speedups<'a> {
     results: &'a Results,
+    /// The subtitle of all figures.
+    workload: String,
     serial: Serial<'a>,
     all: Vec<(&'a Schedule, Ratio)>,
     /// The requested numbers of threads. A strategy with a thread for each job ignores them, so it has no position on
@@ -39,12 +44,46 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let images: BTreeMap<_, _> = all.iter().map(|(schedule, _)| (*schedule, images(schedule))).collect();
     let peers = gathered(images.iter().map(|(schedule, own)| (own, schedule))).into_iter();
     let usual = peers.max_by_key(|(_, schedules)| schedules.len()).map(|(own, _)| own.clone()).unwrap_or_default();
-    let found = Speedups { results, serial, all, asked, processors: results.run.machine.processors, images, usual };
-    let mut blocks = found.figures();
-    blocks.extend(found.best()?);
+    let (processors, workload) = (results.run.machine.processors, results.workload());
+    let found = Speedups { results, workload, serial, all, asked, processors, images, usual };
+    let contest = found.contest()?;
+    let mut blocks = found.figures(contest.as_ref());
+    blocks.extend(contest.map(|contest| contest.finding(found.processors)));
     blocks.extend(found.thread_per_row());
     blocks.push(found.table());
     Ok(blocks)
+}
+
+/// The fastest schedule of the usual image with a thread for each processor, and how many times as long others take.
+struct Contest<'a> {
+    best: &'a Schedule,
+    speedup: Ratio,
+    slower: Vec<(&'a Schedule, Ratio)>,
+    /// Those that are not told apart from the best.
+    open: Vec<(&'a Schedule, Ratio)>,
+}
+
+impl Contest<'_> {
+    fn finding(&self, processors: usize) -> Block {
+        let list = |others: &[(&Schedule, Ratio)]| {
+            let named = others.iter().map(|(other, ratio)| format!("{} ({})", other.name, ratio.in_words(3)));
+            if others.is_empty() { "none".to_string() } else { named.collect::<Vec<_>>().join("; ") }
+        };
+        Block::finding(format!(
+            "With {processors} threads on {processors} processors the highest speedup is that of {}: {:.3} times serial, {}, an \
+             efficiency of {:.3}. Paired with it, these take longer (ratio of times, interval): {}. These are not told apart from it by this run: {}.",
+            self.best.name,
+            self.speedup.value,
+            with_level(&self.speedup.interval, 3),
+            self.speedup.value / processors as f64,
+            list(&self.slower),
+            list(&self.open),
+        ))
+    }
+
+    fn is_open(&self, schedule: &Schedule) -> bool {
+        std::iter::once(self.best).chain(self.open.iter().map(|(other, _)| *other)).any(|other| other == schedule)
+    }
 }
 
 impl Speedups<'_> {
@@ -71,23 +110,30 @@ impl Speedups<'_> {
         !self.asked.is_empty() && !self.asked.contains(&schedule.key.threads)
     }
 
-    fn figures(&self) -> Vec<Block> {
+    fn figures(&self, contest: Option<&Contest<'_>>) -> Vec<Block> {
         let per_processor = |speedup: f64, threads: usize| speedup / self.weight_in_use(threads);
         let strategies: BTreeSet<&str> = self.all.iter().map(|(schedule, _)| schedule.name.as_str()).collect();
         if strategies.len() <= MOST_LINES {
             let (speedup, efficiency) = (self.speedup_chart(), self.efficiency_chart(&per_processor));
             return vec![Block::figure("speedup", speedup), Block::figure("efficiency", efficiency)];
         }
-        let speedup = ["Speedup by strategy", "speedup against serial", "serial"];
-        let efficiency = ["Efficiency by strategy", "speedup per processor in use", "ideal"];
-        vec![
-            Block::figure("speedup", self.dots(speedup, &|speedup, _| speedup)),
-            Block::figure("efficiency", {
-                let mut plot = self.dots(efficiency, &per_processor);
-                plot.caption += self.weights();
-                plot
-            }),
-        ]
+        let speedups = |title: &str, is_usual: bool| {
+            let plot = self.dots([title, "speedup against serial"], &|speedup, _| speedup, is_usual, contest)?;
+            let processors = (self.processors as f64, counted(self.processors, "processor"));
+            Some(DotPlot { guides: vec![(1.0, "serial".to_string()), processors], ..plot })
+        };
+        let titles = ["Efficiency by strategy", "speedup per processor in use"];
+        let efficiency = self.dots(titles, &per_processor, true, contest).map(|mut plot| {
+            plot.guides = vec![(1.0, "ideal".to_string())];
+            plot.caption += self.weights();
+            plot
+        });
+        let plots = [
+            ("speedup", speedups("Speedup by strategy", true)),
+            ("speedup-others", speedups("Speedup by strategy, other images", false)),
+            ("efficiency", efficiency),
+        ];
+        plots.into_iter().filter_map(|(stem, plot)| Some(Block::figure(stem, plot?))).collect()
     }
 
     fn table(&self) -> Block {
@@ -158,18 +204,33 @@ impl Speedups<'_> {
         self.images.get(schedule) == Some(&self.usual)
     }
 
-    /// A row for each strategy with a dot for each number of threads. A strategy with a thread for each job has one
-    /// dot.
-    fn dots(&self, [title, axis, guide]: [&str; 3], value: &dyn Fn(f64, usize) -> f64) -> DotPlot {
+    /// A row for each strategy with a dot for each number of threads, of the usual image or of the others; `None` without
+    /// one. A strategy with a thread for each job has one dot.
+    fn dots(
+        &self,
+        [title, axis]: [&str; 2],
+        value: &dyn Fn(f64, usize) -> f64,
+        is_usual: bool,
+        contest: Option<&Contest<'_>>,
+    ) -> Option<DotPlot> {
+        let own: Vec<&(&Schedule, Ratio)> =
+            self.all.iter().filter(|(schedule, _)| self.is_usual(schedule) == is_usual).collect();
         let threads: BTreeSet<usize> =
-            self.all.iter().filter(|(s, _)| !self.has_a_thread_per_job(s)).map(|(s, _)| s.key.threads).collect();
-        // Schedules of one image stand together, those of the usual image first.
-        let mut rows: BTreeMap<(bool, String), Vec<Option<_>>> = BTreeMap::new();
-        for (schedule, speedup) in &self.all {
-            let line = (!self.is_usual(schedule), self.serial.line(schedule));
-            let dots = rows.entry(line).or_insert_with(|| vec![None; threads.len() + 1]);
+            own.iter().filter(|(s, _)| !self.has_a_thread_per_job(s)).map(|(s, _)| s.key.threads).collect();
+        let is_open = |schedule: &Schedule| contest.is_some_and(|contest| contest.is_open(schedule));
+        let open: BTreeSet<String> = own
+            .iter()
+            .filter(|(schedule, _)| is_open(schedule))
+            .map(|(schedule, _)| self.serial.line(schedule))
+            .collect();
+        let mut rows: BTreeMap<String, Vec<Option<_>>> = BTreeMap::new();
+        for (schedule, speedup) in &own {
+            let dots = rows.entry(self.serial.line(schedule)).or_insert_with(|| vec![None; threads.len() + 1]);
             let place = threads.iter().position(|threads| *threads == schedule.key.threads).unwrap_or(threads.len());
             dots[place] = Some(Estimated::from(*speedup).times(value(1.0, schedule.key.threads)));
+        }
+        if rows.is_empty() {
+            return None;
         }
         // Sorted by the value at the most threads, because readers look for it first. Partial values are not ranked.
         let at_most = |dots: &[Option<Estimated>]| {
@@ -178,12 +239,13 @@ impl Speedups<'_> {
             ranked.or_else(|| all.next_back()).map(|told| (told.is_partial, -told.value)).unwrap_or_default()
         };
         let mut rows: Vec<_> = rows.into_iter().collect();
-        rows.sort_by(|((a, _), first), ((b, _), second)| {
+        rows.sort_by(|(_, first), (_, second)| {
             let ((first_partial, first), (second_partial, second)) = (at_most(first), at_most(second));
-            (a, first_partial).cmp(&(b, second_partial)).then(first.total_cmp(&second))
+            first_partial.cmp(&second_partial).then(first.total_cmp(&second))
         });
         let dots = |dots: Vec<Option<Estimated>>| dots.into_iter().map(|told| Some(told?.dot())).collect();
-        let rows: Vec<DotRow> = rows.into_iter().map(|((_, name), own)| DotRow::new(name, dots(own))).collect();
+        let marked = |name: String| if open.contains(&name) { format!("{OPEN} {name}") } else { name };
+        let rows: Vec<DotRow> = rows.into_iter().map(|(name, own)| DotRow::new(marked(name), dots(own))).collect();
         let workers = if self.all.iter().any(|(schedule, _)| is_of_ranks(&schedule.name)) {
             ["worker", "workers"]
         } else {
@@ -195,10 +257,15 @@ impl Speedups<'_> {
             names.push("a thread per job".to_string());
         }
         let mut plot = DotPlot::new(title, Axis::linear(axis).including([0.9]), rows).grouped(names);
-        plot.guides = vec![(1.0, guide.to_string())];
-        plot.subtitle = self.results.workload();
-        plot.caption = ratio_bars(self.all.iter().map(|(_, speedup)| *speedup));
-        plot
+        let rows = own.iter().flat_map(|(schedule, _)| self.serial.rows(schedule).iter().copied());
+        plot.subtitle = self.results.workload_of(&rows.collect::<Vec<&Row>>());
+        plot.caption = ratio_bars(own.iter().map(|(_, speedup)| *speedup));
+        if !open.is_empty() {
+            let processors = self.processors;
+            let mark = format!(" {OPEN}: with {processors} threads not told apart from the fastest by this run.");
+            plot.caption.push_str(&mark);
+        }
+        Some(plot)
     }
 
     /// A series for each strategy, except those with a thread for each job.
@@ -218,7 +285,7 @@ impl Speedups<'_> {
         let few = ticks.iter().all(|threads| *threads <= FEW_THREADS);
         let x = if few { Axis::linear("threads") } else { Axis::log("threads") }.ticks_at(ticks);
         let mut chart = LineChart::new(title, x, y, series);
-        chart.subtitle = self.results.workload();
+        chart.subtitle.clone_from(&self.workload);
         chart.caption = caption.to_string();
         chart.dodge = 5.0;
         chart
@@ -231,7 +298,7 @@ impl Speedups<'_> {
         let level = if has_level { " Level: a thread for each job, whatever is asked for." } else { "" };
         let (bars, hollow) = (self.bars(), hollow(self.all.iter().map(|(_, speedup)| Estimated::from(*speedup))));
         let bars = bars.trim_end_matches(hollow);
-        let caption = &format!("Median of ratios within a repetition. {bars}{level}{hollow}");
+        let caption = &format!("Ratios within a repetition. {bars}{level}{hollow}");
         let mut chart = self.chart("Speedup against threads", y, self.series(&|speedup, _| speedup), caption);
         let ticks: BTreeSet<usize> =
             chart.series.iter().flat_map(|series| &series.points).map(|point| point.x as usize).collect();
@@ -271,32 +338,21 @@ impl Speedups<'_> {
         chart
     }
 
-    /// The fastest strategy with a thread for each processor, and whether the others are slower beyond the noise.
-    fn best(&self) -> Result<Option<Block>> {
+    fn contest(&self) -> Result<Option<Contest<'_>>> {
         let processors = self.processors;
         let is_candidate = |schedule: &Schedule| schedule.key.threads == processors && self.is_usual(schedule);
         let candidates = || self.all.iter().filter(|(schedule, _)| processors > 1 && is_candidate(schedule));
         let whole = candidates().filter(|(_, speedup)| !speedup.is_partial);
-        let Some((best, speedup)) = whole.max_by(|a, b| a.1.value.total_cmp(&b.1.value)) else { return Ok(None) };
-        let (mut slower, mut open) = (Vec::new(), Vec::new());
-        for (other, _) in candidates().filter(|(other, _)| other != best) {
+        let Some(&(best, speedup)) = whole.max_by(|a, b| a.1.value.total_cmp(&b.1.value)) else { return Ok(None) };
+        let mut contest = Contest { best, speedup, slower: Vec::new(), open: Vec::new() };
+        for &(other, _) in candidates().filter(|(other, _)| *other != best) {
             let rows = |schedule: &Schedule| self.serial.rows(schedule).iter().copied();
             if let Some(ratio) = time_ratio(rows(other), rows(best), any_schedule, self.results.stopping())? {
-                let text = format!("{} ({})", other.name, ratio.in_words(3));
-                if ratio.interval.low > 1.0 { slower.push(text) } else { open.push(text) }
+                let list = if ratio.interval.low > 1.0 { &mut contest.slower } else { &mut contest.open };
+                list.push((other, ratio));
             }
         }
-        let list = |names: Vec<String>| if names.is_empty() { "none".to_string() } else { names.join("; ") };
-        Ok(Some(Block::finding(format!(
-            "With {processors} threads on {processors} processors the highest median speedup is that of {}: {:.3} times serial, {}, an \
-             efficiency of {:.3}. Paired with it, these take longer (ratio of times, interval): {}. These are not told apart from it by this run: {}.",
-            best.name,
-            speedup.value,
-            with_level(&speedup.interval, 3),
-            speedup.value / processors as f64,
-            list(slower),
-            list(open),
-        ))))
+        Ok(Some(contest))
     }
 
     fn thread_per_row(&self) -> Option<Block> {

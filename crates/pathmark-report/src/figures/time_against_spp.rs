@@ -1,4 +1,5 @@
-//! Seconds against samples per pixel: a line through the origin if only sampling takes time.
+//! Seconds against samples per pixel: a line of slope 1 on logarithmic axes if only sampling takes time, and the seconds
+//! of a sample against those of the longest renders, which a line would leave at 1.
 
 use crate::analysis::fit::{line, log_log};
 use crate::prelude::*;
@@ -11,12 +12,14 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         if several { format!("{image}, {}", row.schedule.label()) } else { image }
     });
     let (mut overlays, mut findings, mut series, mut all) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut shares = Vec::new();
     for (name, rows) in lines {
+        shares.push((name.clone(), per_sample(results, &rows)?));
         let cells = group(rows, |row| row.spp).into_iter();
         let cells = cells.map(|(spp, rows)| (spp, Repeats::of_rows(rows, |row| row.makespan_s)));
         // The fit compares them, so all come from the same repetitions.
         let times = in_common(cells.collect()).into_iter().filter_map(|(spp, seconds)| {
-            let seconds = Estimated::median(&seconds, results.stopping())?;
+            let seconds = Estimated::typical(&seconds, results.stopping())?;
             all.push(seconds);
             Some(seconds.above(f64::from(spp)))
         });
@@ -56,14 +59,41 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         }
         series.push(Series::new(name, Look::nth(series.len()), points).scattered());
     }
-    let mut chart = LineChart::new(
-        "Time against samples per pixel",
-        Axis::linear("samples per pixel").ticks_at(results.rows().map(|row| f64::from(row.spp))).including([0.0]),
-        Axis::linear("wall seconds").including([0.0]),
-        series,
-    );
+    let ticks = || results.rows().map(|row| f64::from(row.spp));
+    let axis = || Axis::log("samples per pixel").ticks_at(ticks());
+    let linear = series.first().and_then(|series| series.points.last());
+    let linear = linear.and_then(|last| Curve::power_through((last.x, last.y), 1.0));
+    overlays.extend(linear.map(|curve| Overlay::guide("in proportion to the samples", curve)));
+    let mut chart = LineChart::new("Time against samples per pixel", axis(), Axis::log("wall seconds"), series);
     chart.subtitle = results.workload();
-    chart.caption = format!("Points: median over seeds and repetitions. {}", bars(all));
+    chart.caption = format!("Over seeds and repetitions. {}", bars(all));
     chart.overlays = overlays;
-    Ok([Block::figure("time-against-spp", chart)].into_iter().chain(findings).collect())
+    let mut blocks = vec![Block::figure("time-against-spp", chart)];
+    let known: Vec<Estimated> = shares.iter().flat_map(|(_, points)| points).map(|(_, told)| *told).collect();
+    if !known.is_empty() {
+        let points =
+            |points: Vec<(u32, Estimated)>| points.into_iter().map(|(spp, told)| told.above(spp.into())).collect();
+        let series = Series::by_name(shares.into_iter().map(|(name, own)| (name, points(own))));
+        let y = Axis::linear("seconds of a sample / those at the most samples").including([0.95, 1.05]);
+        let mut chart = LineChart::new("Is time in proportion to samples?", axis(), y, series);
+        chart.subtitle = results.workload();
+        chart.caption = format!("Ratios within a seed and a repetition. {}", bars(known));
+        chart.overlays = vec![Overlay::guide("in proportion", Curve::Line { intercept: 1.0, slope: 0.0 })];
+        chart.dodge = 4.0;
+        blocks.push(Block::figure("time-per-sample", chart));
+    }
+    Ok(blocks.into_iter().chain(findings).collect())
+}
+
+/// The seconds of a sample over those at the most samples, for each smaller number of samples.
+fn per_sample(results: &Results, rows: &[&Row]) -> Result<Vec<(u32, Estimated)>> {
+    let by_spp = group(rows.iter().copied(), |row| row.spp);
+    let Some((most, longest)) = by_spp.iter().next_back() else { return Ok(Vec::new()) };
+    let any_spp: Forget = |image, _| image.spp = 0;
+    let mut cells = Vec::new();
+    for (spp, rows) in by_spp.iter().filter(|(spp, _)| *spp != most) {
+        let seconds = |row: &Row| Some(row.makespan_s? / f64::from(row.spp));
+        cells.push((*spp, ratios(rows.iter().copied(), longest.iter().copied(), any_spp, seconds)?));
+    }
+    Ok(along(cells, |_| (), results.stopping()))
 }

@@ -1,6 +1,7 @@
 //! Timelines: a lane for each worker, and the shares of workers times makespan.
 
 use crate::analysis::balance::Balance;
+use crate::plot::Schedule;
 use crate::prelude::*;
 use crate::timeline;
 
@@ -9,7 +10,7 @@ type Run = (String, Balance, bool);
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let processors = results.run.machine.processors;
-    let (mut schedules, mut runs) = (Vec::new(), Vec::<Run>::new());
+    let (mut own, mut shared, mut runs) = (Vec::new(), Vec::new(), Vec::<Run>::new());
     let groups = results.by(|row| (&row.schedule, results.series_name(row), row.spp));
     let mut groups: Vec<_> = groups.into_iter().collect();
     groups.sort_by_key(|((schedule, ..), _)| (schedule.key.threads > processors, !schedule.is_serial()));
@@ -17,11 +18,35 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let Some(row) = Results::typical(&rows) else { continue };
         let Some(trace) = results.trace(row)? else { continue };
         let Some(balance) = timeline::balance(&trace) else { continue };
-        schedules.push(timeline::lanes(&trace, &balance, processors));
+        let lanes = timeline::lanes(&trace, &balance, processors);
+        if schedule.key.threads > processors {
+            shared.push(lanes);
+        } else {
+            own.push((schedule.is_serial(), lanes));
+        }
         runs.push((joined([timeline::name(&trace), series]), balance, schedule.key.threads <= processors));
     }
-    let mut chart = timeline::charts(schedules, results.workload());
-    chart.caption = format!("Of each schedule the run with the median time. {}", chart.caption);
+    // A serial run takes as long as all workers together, so its lane would leave the others in a part of the width.
+    let has_parallel = own.iter().any(|(is_serial, _)| !is_serial);
+    let (serial, others): (Vec<_>, Vec<_>) = own.into_iter().partition(|(is_serial, _)| has_parallel && *is_serial);
+    let alone: Vec<String> = serial.into_iter().map(|(_, lanes)| format!(" Not drawn: {}.", lanes.title)).collect();
+    let chart = |title: &str, schedules: Vec<Schedule>, more: &str| {
+        let mut chart = timeline::charts(schedules, results.workload());
+        chart.title += title;
+        chart.caption = format!("Of each schedule the run with the median time. {}{more}", chart.caption);
+        chart
+    };
+    let mut blocks = Vec::new();
+    let others: Vec<Schedule> = others.into_iter().map(|(_, lanes)| lanes).collect();
+    if !others.is_empty() || shared.is_empty() {
+        blocks.push(Block::figure("timelines", chart("", others, &alone.concat())));
+    }
+    // A job that shares a processor takes longer by its waiting, so these jobs have a colour scale of their own.
+    if !shared.is_empty() {
+        let title = format!(" with more threads than {}", counted(processors, "processor"));
+        let more = " The time of a job includes its waiting for a processor.";
+        blocks.push(Block::figure("timelines-oversubscribed", chart(&title, shared, more)));
+    }
     let share = |balance: &Balance, seconds: f64| {
         format!("{:.1} %", 100.0 * seconds / (balance.makespan_s * balance.workers.len() as f64))
     };
@@ -39,5 +64,6 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             seconds.map_or_else(|| "-".to_string(), |seconds| format!("{:.2}", seconds * 1e6))
         })
         .end();
-    Ok(vec![Block::figure("timelines", chart), table])
+    blocks.push(table);
+    Ok(blocks)
 }

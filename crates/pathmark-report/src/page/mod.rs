@@ -343,7 +343,10 @@ fn provenance(section: &Section, run: &RunFile) -> Markup {
         ("governor", machine.governor.clone()),
         ("memory", or_unknown(machine.memory_bytes, memory)),
         ("system", machine.system.clone()),
-        ("load when the sweep began", machine.load_average.clone()),
+        (
+            "load over 1, 5 and 15 minutes when the sweep began, earlier experiments included",
+            machine.load_average.clone(),
+        ),
         (
             "compiler",
             format!(

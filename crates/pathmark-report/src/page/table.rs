@@ -44,7 +44,7 @@ impl TableCell {
             }
             Self::Estimated(Some(Estimated { value, interval: Some(interval), .. }), digits) => {
                 let [value, low, high] = [*value, interval.low, interval.high].map(|number| digits.show(number));
-                format!("{value}, {low} to {high} ({:.1} %)", 100.0 * interval.level)
+                format!("{value}, {low} to {high} ({:.1} %)", interval.percent())
             }
         }
     }
@@ -197,7 +197,7 @@ mod tests {
             .end();
         let Block::Table { table, .. } = &block else { panic!("a table") };
         let shown: Vec<Vec<String>> = table.rows().collect();
-        assert_eq!(shown[0], ["true", "0.33", "0.33, 0.25 to 0.50 (96.9 %)"]);
+        assert_eq!(shown[0], ["true", "0.33", "0.33, 0.25 to 0.50 (96.8 %)"]);
         assert_eq!(shown[1], ["true", "2", "2.00, no interval"]);
         assert_eq!(shown[2], ["false", "-", "-"]);
         let folder = tempfile::tempdir().unwrap();

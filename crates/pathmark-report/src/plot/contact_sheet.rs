@@ -31,6 +31,22 @@ pub struct Cell {
 }
 
 impl Cell {
+    /// The part in the middle that a sheet shows with all its pixels; `None` if it shows all pixels of the image.
+    pub fn crop(&self) -> Option<Self> {
+        let (_, step) = factors(self.width);
+        let (width, height) = (self.width / step, self.height / step);
+        let (left, top) = ((self.width - width) / 2, (self.height - height) / 2);
+        let start = |row: u32| 3 * ((top + row) * self.width + left) as usize;
+        let rows = (0..height).filter_map(|row| self.rgb.get(start(row)..start(row) + 3 * width as usize));
+        let rgb = rows.flatten().copied().collect();
+        (step > 1).then(|| Self { caption: vec!["middle, every pixel".to_string()], width, height, rgb })
+    }
+
+    /// Of how many columns, and of how many rows, the sheet shows one.
+    pub fn step(&self) -> u32 {
+        factors(self.width).1
+    }
+
     /// An image as it is shown on a display.
     pub fn of(image: &Image, caption: Vec<String>) -> Result<Self> {
         Ok(Self { caption, width: image.width, height: image.height, rgb: quantise_image(image)? })
@@ -162,6 +178,12 @@ fn caption(cell: Option<&Cell>, column: f64) -> Vec<(String, usize)> {
     lines.flat_map(|(i, line)| font::wrap(line, TEXT_SIZE, column).into_iter().map(move |part| (part, i))).collect()
 }
 
+/// The factors by which an image of this width is enlarged and reduced. One of them is 1.
+fn factors(width: u32) -> (u32, u32) {
+    let nearest = |a: u32, b: u32| ((a + b / 2) / b).max(1);
+    (nearest(SHOWN, width), nearest(width, REDUCED))
+}
+
 /// Scales an image to about the usual width, by whole factors: repeats each pixel as a square, or keeps one pixel of
 /// each square. Averaging would hide the noise that readers look for.
 fn shown(cell: &Cell) -> Result<RgbImage> {
@@ -169,8 +191,7 @@ fn shown(cell: &Cell) -> Result<RgbImage> {
         let problem = format!("{} bytes for {} x {} pixels", cell.rgb.len(), cell.width, cell.height);
         return Err(Error::system("drawing", "an image", std::io::Error::other(problem)));
     };
-    let nearest = |a: u32, b: u32| ((a + b / 2) / b).max(1);
-    let (up, down) = (nearest(SHOWN, image.width()), nearest(image.width(), REDUCED));
+    let (up, down) = factors(image.width());
     let size = |length: u32| (length * up / down).max(1);
     let source = |place: u32, length: u32| (place * down / up + down / 2).min(length - 1);
     Ok(RgbImage::from_fn(size(image.width()), size(image.height()), |x, y| {

@@ -32,31 +32,43 @@ impl Frame {
         ranges: Option<(Range, Range)>,
         legend: (f64, f64),
     ) -> (Drawing, Self) {
-        let y_ticks = ranges.map_or_else(Vec::new, |(_, y)| y.ticks(axes.1.ticks.as_deref(), 8));
-        let y_labels = y_ticks.iter().map(|tick| font::width(&tick.label, SMALL_SIZE)).fold(0.0, f64::max);
         let mut drawing = Drawing::new(title, WIDTH, 0.0);
         let top = words_above(&mut drawing, title, subtitle) + 12.0;
-        let frame = Self {
-            left: MARGIN + TEXT_SIZE + 12.0 + y_labels + GAP + TICK,
-            top,
-            right: WIDTH - MARGIN - if legend.0 > 0.0 { legend.0 + 20.0 } else { 0.0 },
-            bottom: top + DATA_HEIGHT.max(legend.1),
-            ranges,
-        };
-        let below = frame.bottom + TICK + GAP + SMALL_SIZE + 14.0 + TEXT_SIZE;
-        let end = words_below(&mut drawing, caption, below + 14.0);
+        let right = WIDTH - MARGIN - if legend.0 > 0.0 { legend.0 + 20.0 } else { 0.0 };
+        let frame = Self::within(&mut drawing, [MARGIN, top, right, top + DATA_HEIGHT.max(legend.1)], axes, ranges);
+        let end = words_below(&mut drawing, caption, frame.end() + TEXT_SIZE + 14.0);
         // The last line is kept free for a remark about points that could not be drawn.
         drawing.height = (end + SMALL_SIZE * LEADING + 8.0).ceil();
-        if let Some((x, _)) = ranges {
-            let area = [frame.left, frame.top, frame.right, frame.bottom];
-            ruler(&mut drawing, &x.ticks(axes.0.ticks.as_deref(), 9), area);
-            frame.vertical_axis(&mut drawing, &y_ticks);
-        }
-        drawing.outline([frame.left, frame.top, frame.right, frame.bottom], INK);
-        let (centre, below) = (frame.centre(), frame.bottom + TICK + GAP + SMALL_SIZE + 14.0);
-        drawing.text((centre.0, below), &axes.0.label, TEXT_SIZE, INK, Align::Centre);
-        drawing.text_upwards((MARGIN + 0.5 * TEXT_SIZE, centre.1), &axes.1.label, TEXT_SIZE, INK);
         (drawing, frame)
+    }
+
+    /// Draws frame and axes. The area goes from the title of the vertical axis to the right end of the data; the labels of
+    /// the horizontal axis are below it.
+    pub(super) fn within(
+        drawing: &mut Drawing,
+        [edge, top, right, bottom]: [f64; 4],
+        axes: (&Axis, &Axis),
+        ranges: Option<(Range, Range)>,
+    ) -> Self {
+        let y_ticks = ranges.map_or_else(Vec::new, |(_, y)| y.ticks(axes.1.ticks.as_deref(), 8));
+        let y_labels = y_ticks.iter().map(|tick| font::width(&tick.label, SMALL_SIZE)).fold(0.0, f64::max);
+        let left = edge + TEXT_SIZE + 12.0 + y_labels + GAP + TICK;
+        let frame = Self { left, top, right, bottom, ranges };
+        if let Some((x, _)) = ranges {
+            let most = if right - left < 0.5 * WIDTH { 5 } else { 9 };
+            ruler(drawing, &x.ticks(axes.0.ticks.as_deref(), most), [left, top, right, bottom]);
+            frame.vertical_axis(drawing, &y_ticks);
+        }
+        drawing.outline([left, top, right, bottom], INK);
+        let centre = frame.centre();
+        drawing.text((centre.0, frame.end()), &axes.0.label, TEXT_SIZE, INK, Align::Centre);
+        drawing.text_upwards((edge + 0.5 * TEXT_SIZE, centre.1), &axes.1.label, TEXT_SIZE, INK);
+        frame
+    }
+
+    /// The middle of the title below the horizontal axis.
+    pub(super) fn end(&self) -> f64 {
+        self.bottom + TICK + GAP + SMALL_SIZE + 14.0
     }
 
     /// The position of a point, if it has one.
@@ -86,6 +98,11 @@ impl Frame {
     /// The middle of the data area.
     pub(super) fn centre(&self) -> Place {
         self.at(0.5, 0.5)
+    }
+
+    /// The right end of the data area, and its top and bottom.
+    pub(super) fn right_side(&self) -> (f64, [f64; 2]) {
+        (self.right, [self.top, self.bottom])
     }
 
     /// The upper left corner of the legend.

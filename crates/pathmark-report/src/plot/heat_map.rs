@@ -66,17 +66,18 @@ impl HeatMap {
 
 impl Figure for HeatMap {
     fn drawing(&self) -> Drawing {
-        let mut drawing = Drawing::new(&self.title, WIDTH, 0.0);
+        let (width, height) = (f64::from(self.width.max(1)), f64::from(self.height.max(1)));
+        let factor = ((WIDTH - 2.0 * MARGIN) / width).min(TALLEST / height);
+        // No wider than the image and the colour bar with the last label.
+        let mut drawing = Drawing::new(&self.title, 2.0 * MARGIN + (width * factor).max(BAR + MARGIN), 0.0);
         let mut y = frame::words_above(&mut drawing, &self.title, &self.subtitle) + 12.0;
         let ends = self.ends();
-        let widest = WIDTH - 2.0 * MARGIN;
+        let widest = drawing.width - 2.0 * MARGIN;
         for line in font::wrap(&self.name, TEXT_SIZE, widest) {
             drawing.text((MARGIN, y + 0.5 * TEXT_SIZE * LEADING), &line, TEXT_SIZE, INK, Align::Left);
             y += TEXT_SIZE * LEADING;
         }
         y += 4.0;
-        let (width, height) = (f64::from(self.width.max(1)), f64::from(self.height.max(1)));
-        let factor = (widest / width).min(TALLEST / height);
         self.draw_image(&mut drawing, (MARGIN, y), factor, ends.unwrap_or((0.0, 0.0)));
         y += height * factor + SPACE;
         if let Some((low, high)) = ends {

@@ -3,14 +3,17 @@
 use super::Figure;
 use super::axis::{Axis, Range, Scale};
 use super::drawing::{Align, Drawing, Note, PartKind, Place};
+use super::end_labels::{self, EndLabel};
 use super::frame::{self, Frame};
 use super::legend::{self, LegendEntry, Sample};
 use super::marker;
 use super::number::{between, short};
 use super::overlay::{Overlay, inside};
-use super::style::{Colour, DASHES, Dash, LINE, Look, MUTED, TEXT_SIZE};
+use super::style::{Colour, DASHES, Dash, LINE, Look, MUTED, SMALL_SIZE, TEXT_SIZE};
 use std::collections::HashMap;
 
+/// Distance of a word from its point, in pixels.
+const BESIDE: f64 = 7.0;
 /// Width of a fitted line: thinner than the data it belongs to.
 const FIT_LINE: f64 = 1.5;
 
@@ -116,6 +119,10 @@ pub struct LineChart {
     pub overlays: Vec<Overlay>,
     /// Pixels by which neighbouring series are moved apart sideways, so that points at one x stay visible; 0 for none.
     pub dodge: f64,
+    /// Words beside points, such as their samples per pixel.
+    pub words: Vec<(Point, String)>,
+    /// Whether each series is named at the end of its line instead of in a legend.
+    pub named_at_ends: bool,
 }
 
 impl LineChart {
@@ -140,11 +147,12 @@ impl LineChart {
     /// A chart of `series`, without guides.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> Self {
         let (subtitle, caption) = (String::new(), String::new());
-        Self { title: title.into(), subtitle, caption, x, y, series, overlays: Vec::new(), dodge: 0.0 }
+        let (overlays, words) = (Vec::new(), Vec::new());
+        Self { title: title.into(), subtitle, caption, x, y, series, overlays, dodge: 0.0, words, named_at_ends: false }
     }
 
     /// The ranges of both axes; `None` if no point can be drawn.
-    fn ranges(&self) -> Option<(Range, Range)> {
+    pub(super) fn ranges(&self) -> Option<(Range, Range)> {
         // A point needs a position on both axes; otherwise it counts for neither.
         let alone = |axis: &Axis, value: f64| Range::of(axis, [value]).is_some();
         let drawable = |point: &&Point| alone(&self.x, point.x) && alone(&self.y, point.y);
@@ -183,6 +191,44 @@ impl LineChart {
             LegendEntry::new(Sample::Line { colour, dash, width: FIT_LINE }, &overlay.label, &overlay.label)
         });
         series.chain(overlays).collect()
+    }
+
+    /// Draws the data into a frame; returns the number of points without a position.
+    pub(super) fn draw_data(&self, drawing: &mut Drawing, frame: &Frame) -> usize {
+        if self.ranges().is_none() {
+            drawing.text(frame.centre(), "no data", TEXT_SIZE, MUTED, Align::Centre);
+            return self.series.iter().map(|series| series.points.len()).sum();
+        }
+        let first_alike = self.first_alike();
+        let own = || self.series.iter().enumerate().filter(|(index, _)| first_alike[*index] == *index);
+        for (_, series) in own().filter(|(_, series)| series.spread == Spread::Band) {
+            drawing.part(PartKind::Series, &series.name, |drawing| Self::draw_band(drawing, frame, series));
+        }
+        for (index, overlay) in self.overlays.iter().enumerate() {
+            let (colour, dash) = self.stroke(index, overlay);
+            drawing.part(PartKind::Series, &overlay.label, |drawing| {
+                for stretch in frame.curve(|x, y| inside(&overlay.curve, x, y)) {
+                    drawing.dashed(&stretch, colour, FIT_LINE, dash);
+                }
+            });
+        }
+        let mut lost = 0;
+        for (index, series) in own() {
+            lost += drawing
+                .part(PartKind::Series, &series.name, |drawing| self.draw_series(drawing, frame, &first_alike, index));
+        }
+        for (point, word) in &self.words {
+            if let Some((x, y)) = frame.spot(point.x, point.y) {
+                drawing.text((x + BESIDE, y - BESIDE), word, SMALL_SIZE, MUTED, Align::Left);
+            }
+        }
+        lost
+    }
+
+    /// The name, colour and last point of each series.
+    fn ends(&self) -> Vec<EndLabel<'_>> {
+        let ended = self.series.iter().filter_map(|series| Some((series, *series.points.last()?)));
+        ended.map(|(series, point)| EndLabel { text: &series.name, point, colour: series.look.colour }).collect()
     }
 
     /// Colour and dashes of overlay number `index`; neighbouring guides differ in their dashes.
@@ -268,39 +314,21 @@ impl Figure for LineChart {
     }
 
     fn drawing(&self) -> Drawing {
-        let first_alike = self.first_alike();
-        let entries = self.entries(&first_alike);
+        let entries = self.entries(&self.first_alike());
         let ranges = self.ranges();
         let words = [&self.title, &self.subtitle, &self.caption].map(String::as_str);
-        let (mut drawing, frame) = Frame::begin(words, (&self.x, &self.y), ranges, legend::size(&entries));
-        let mut lost = 0;
-        if ranges.is_some() {
-            let own = self.series.iter().enumerate().filter(|(index, _)| first_alike[*index] == *index);
-            for (_, series) in own.filter(|(_, series)| series.spread == Spread::Band) {
-                drawing.part(PartKind::Series, &series.name, |drawing| Self::draw_band(drawing, &frame, series));
-            }
-            for (index, overlay) in self.overlays.iter().enumerate() {
-                let (colour, dash) = self.stroke(index, overlay);
-                drawing.part(PartKind::Series, &overlay.label, |drawing| {
-                    for stretch in frame.curve(|x, y| inside(&overlay.curve, x, y)) {
-                        drawing.dashed(&stretch, colour, FIT_LINE, dash);
-                    }
-                });
-            }
-            for (index, series) in self.series.iter().enumerate().filter(|(index, _)| first_alike[*index] == *index) {
-                lost += drawing.part(PartKind::Series, &series.name, |drawing| {
-                    self.draw_series(drawing, &frame, &first_alike, index)
-                });
-            }
-        } else {
-            lost += self.series.iter().map(|series| series.points.len()).sum::<usize>();
-            drawing.text(frame.centre(), "no data", TEXT_SIZE, MUTED, Align::Centre);
-        }
+        let legend = if self.named_at_ends { (end_labels::width(&self.ends()), 0.0) } else { legend::size(&entries) };
+        let (mut drawing, frame) = Frame::begin(words, (&self.x, &self.y), ranges, legend);
+        let lost = self.draw_data(&mut drawing, &frame);
         if lost > 0 {
             let plural = if lost == 1 { "point has" } else { "points have" };
             frame::remark(&mut drawing, &format!("{lost} {plural} no place on these axes"));
         }
-        legend::draw(&mut drawing, &entries, frame.legend());
+        if self.named_at_ends {
+            end_labels::draw(&mut drawing, &frame, &self.ends());
+        } else {
+            legend::draw(&mut drawing, &entries, frame.legend());
+        }
         drawing
     }
 }

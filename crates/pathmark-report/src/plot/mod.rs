@@ -9,6 +9,7 @@ mod colour_bar;
 pub mod contact_sheet;
 pub mod dot_plot;
 pub mod drawing;
+mod end_labels;
 pub mod font;
 mod frame;
 pub mod gantt;
@@ -19,6 +20,7 @@ mod marker;
 pub mod number;
 pub mod overlay;
 mod paint;
+pub mod panels;
 #[cfg(test)]
 mod schedule_tests;
 pub mod stacked_bar;
@@ -39,6 +41,7 @@ pub use gantt::{GanttChart, JobBar, Schedule};
 pub use heat_map::{HeatMap, Tile};
 pub use line_chart::{LineChart, Point, Series, Spread};
 pub use overlay::{Curve, Overlay};
+pub use panels::Panels;
 pub use stacked_bar::{Piece, StackPart, StackRow, StackedBars};
 
 /// A figure that can be drawn as vectors and as pixels.

@@ -205,6 +205,24 @@ fn sheets_enlarge_small_images_and_thin_out_large_ones() {
     assert!(last_row_of_three >= 9, "{last_row_of_three}");
 }
 
+/// A sheet shows one of four columns and rows of 1024x768 pixels; the crop has all pixels of the middle quarter.
+#[test]
+fn a_crop_has_all_pixels_of_the_middle() {
+    let whole = image(1024, 768);
+    let step = whole.step();
+    let crop = whole.crop().unwrap();
+    assert_eq!((crop.width, crop.height), (1024 / step, 768 / step));
+    let (left, top) = ((1024 - crop.width) / 2, (768 - crop.height) / 2);
+    let pixel = |cell: &Cell, x: u32, y: u32| {
+        let at = 3 * (y * cell.width + x) as usize;
+        cell.rgb[at..at + 3].to_vec()
+    };
+    for (x, y) in [(0, 0), (1, 0), (crop.width - 1, crop.height - 1)] {
+        assert_eq!(pixel(&crop, x, y), pixel(&whole, left + x, top + y));
+    }
+    assert!(image(96, 64).crop().is_none());
+}
+
 #[test]
 fn sheets_are_the_same_each_time_and_survive_gaps() {
     let full = || sheet(vec![vec![Some(image(8, 4)); 6], vec![Some(image(8, 4)), None, None, None, None, None]]);

@@ -48,15 +48,16 @@ pub(crate) fn identified<K: Ord, T: Copy>(
     Ok(found)
 }
 
-/// Ratios of a value between items of two lists that share a key. The key identifies the items of the second list.
+/// Ratios of a value between items of two lists that share a key, each with the item of the first list. The key identifies the
+/// items of the second list.
 pub(crate) fn ratios_by<K: Ord, T: Copy>(
     above: impl IntoIterator<Item = (K, T)>,
     below: impl IntoIterator<Item = (K, T)>,
     of_two: impl Fn(T, T) -> InputError,
     value: impl Fn(T) -> Option<f64>,
-) -> Result<Vec<f64>> {
+) -> Result<Vec<(T, f64)>> {
     let below = identified(below, of_two)?;
-    let ratio = |(key, item): (K, T)| Some(value(item)? / value(*below.get(&key)?)?);
+    let ratio = |(key, item): (K, T)| Some((item, value(item)? / value(*below.get(&key)?)?));
     Ok(above.into_iter().filter_map(ratio).collect())
 }
 
@@ -107,7 +108,7 @@ fn processes<'a>(values: impl IntoIterator<Item = (&'a Shared, &'a f64)>) -> BTr
     gathered(values.into_iter().map(of_process))
 }
 
-/// The estimate from the values of a cell: over processes if they are of adjacent pairs, and else their median.
+/// The estimate from the values of a cell: over processes if they are of adjacent pairs, and else their typical value.
 fn estimated<'a>(values: impl IntoIterator<Item = (&'a Shared, &'a f64)>, stopping: Stopping) -> Option<Estimated> {
     let values: Vec<(&Shared, &f64)> = values.into_iter().collect();
     let is_in_pairs = values.iter().any(|((_, _, (_, pair)), _)| pair.is_some());
@@ -115,7 +116,7 @@ fn estimated<'a>(values: impl IntoIterator<Item = (&'a Shared, &'a f64)>, stoppi
     if let Some(found) = paired_ratio(&own, LEVEL).filter(|_| is_in_pairs && stopping == Stopping::Fixed) {
         return Some(Estimated { count: Some(found.processes), ..found.ratio.into() });
     }
-    Estimated::median(&own.iter().filter_map(|own| median(own)).collect::<Vec<f64>>(), stopping)
+    Estimated::typical(&own.iter().filter_map(|own| median(own)).collect::<Vec<f64>>(), stopping)
 }
 
 fn alike(row: &Row, other: &Row) -> InputError {
@@ -221,7 +222,7 @@ impl Repeats {
         processes(&self.0).values().filter_map(|own| median(own)).collect()
     }
 
-    /// The median over all repetitions of this cell.
+    /// The typical value over all repetitions of this cell: see [`Estimated::typical`].
     pub(crate) fn median(&self, stopping: Stopping) -> Option<Estimated> {
         estimated(&self.0, stopping)
     }
@@ -242,7 +243,7 @@ pub(crate) fn ratios<'a>(
     Ok(Repeats::of(above, forget, &value)?.over(&Repeats::of(below, forget, &value)?))
 }
 
-/// How many times as long rows of one kind take as rows of another: the median of the ratios.
+/// How many times as long rows of one kind take as rows of another: the typical ratio.
 pub(crate) fn time_ratio<'a>(
     above: impl IntoIterator<Item = &'a Row>,
     below: impl IntoIterator<Item = &'a Row>,
@@ -310,7 +311,7 @@ impl From<Ratio> for Estimated {
     }
 }
 
-/// The medians of several cells. Cells of the same images are compared over repetitions that they share: either those
+/// The typical values of several cells: medians, or means of few values ([`Estimated::typical`]). Cells of the same images are compared over repetitions that they share: either those
 /// of one cell, or those that all cells of the most repetitions have. Of these choices the one counts that gives the
 /// most values in cells without a gap. A cell that lacks one of these repetitions is partial.
 pub(crate) fn medians<T>(cells: impl IntoIterator<Item = (T, Repeats)>, stopping: Stopping) -> Vec<(T, Estimated)> {

@@ -21,6 +21,11 @@ impl Image {
         self.pixels[y as usize * self.width as usize + x as usize]
     }
 
+    /// The largest finite channel of all pixels; 0 without any above it.
+    pub fn brightest(&self) -> f64 {
+        brightest(self.pixels.iter().copied())
+    }
+
     /// The mean of each channel; NaN for a picture without pixels.
     pub fn mean(&self) -> [f64; 3] {
         let mut sum = [0.0; 3];
@@ -31,4 +36,9 @@ impl Image {
         }
         sum.map(|sum| sum / self.pixels.len() as f64)
     }
+}
+
+/// The largest finite channel of some pixels; 0 without any above it.
+pub(super) fn brightest(pixels: impl Iterator<Item = [f64; 3]>) -> f64 {
+    pixels.flatten().filter(|value| value.is_finite()).fold(0.0, f64::max)
 }

@@ -1,5 +1,6 @@
 //! The sums of one piece's pixels. Only the kernel that renders the piece writes to them.
 
+use super::image::brightest;
 use super::whole::room;
 use super::{Bounds, PixelSum};
 use crate::error::Result;
@@ -43,6 +44,11 @@ impl TileBuffer {
             *pixel = pixel.plus(part);
         }
         self
+    }
+
+    /// The largest channel of its pixels, as in [`super::Image::brightest`].
+    pub fn brightest(&self) -> f64 {
+        brightest(self.pixels.iter().map(PixelSum::mean))
     }
 
     /// The rows, from the top.

@@ -1,5 +1,6 @@
 //! The film: the sums of all pixels of an image.
 
+use super::image::brightest;
 use super::{Image, PixelSum, TileBuffer};
 use crate::digest::Fingerprint;
 use crate::error::{Error, InputError, Result};
@@ -158,6 +159,11 @@ impl Film {
             *out = pixel.mean();
         }
         image
+    }
+
+    /// [`Image::brightest`] of its image.
+    pub fn brightest(&self) -> f64 {
+        brightest(self.pixels.iter().map(PixelSum::mean))
     }
 
     /// SHA-256 over the size and the bits of every sum, shortened to 16 hexadecimal digits. The sign of zero is

@@ -8,6 +8,7 @@ mod dielectric;
 mod diffuse;
 mod fresnel_mirror;
 mod ggx;
+mod guarded_kd_ks;
 mod kd_ks;
 mod mirror;
 mod polished;
@@ -187,4 +188,5 @@ materials! {
     fresnel_mirror::FresnelMirror, "fresnel-mirror", "a mirror that absorbs the light that Fresnel's formula transmits";
     conductor::Conductor, "conductor", "metal, smooth or rough (GGX), with Schlick's Fresnel term";
     kd_ks::KdKs, "kd-ks", "a diffuse base under GGX facets, weighted by Fresnel's formula for the macroscopic normal";
+    guarded_kd_ks::GuardedKdKs, "guarded-kd-ks", "wrong on purpose: kd-ks with report B's guards, which cut peaks and make light at grazing angles";
 }

@@ -4,6 +4,7 @@ mod angular_emission;
 mod camera;
 mod coincident;
 mod extent;
+mod faults;
 mod fog;
 mod generator;
 mod hierarchy;
@@ -17,6 +18,7 @@ mod shape;
 
 pub use angular_emission::AngularEmission;
 pub use camera::{CAMERA_EXAMPLES, CAMERAS, Camera, FILTERS, Filter, FilterEntry, Lens, SUBPIXELS, View};
+pub use faults::Faults;
 pub use fog::Fog;
 pub use generator::GENERATORS;
 pub use hierarchy::{
@@ -28,9 +30,9 @@ pub use light::{Aim, Lights, one_minus_cos};
 pub use light::{AnyTarget, NO_LIGHT, TriangleTarget, per_steradian, point_of, towards_cap};
 pub use point_light::PointLight;
 pub use profile::{
-    ANGULAR_EMISSION, AllEffects, BACKGROUND, COMPOUND, DiffuseOnly, EPSILON, FEATURES, FOG, FogEffects, HIERARCHY,
-    LENS, LensEffects, POINT_LIGHT, PROFILES, ProfileEntry, ProfileVisitor, REACH, SceneryEffects, SmallptEffects,
-    SurfaceEffects, effect_names, with_profile,
+    ANGULAR_EMISSION, AllEffects, BACKGROUND, COMPOUND, DiffuseOnly, EPSILON, FAULTS, FEATURES, FOG, FogEffects,
+    HIERARCHY, LENS, LensEffects, POINT_LIGHT, PROFILES, ProfileEntry, ProfileVisitor, REACH, SceneryEffects,
+    SmallptEffects, SurfaceEffects, effect_names, with_profile,
 };
 pub use shape::{Nearest, PRIMITIVES, Plane, Primitive, Primitives, SHAPES, Sphere, Triangle, nearness};
 
@@ -134,6 +136,8 @@ pub struct Scene {
     /// The least distance of a hit. If `None`, the ray's exact start prevents self-intersection. Scene files have none,
     /// because the epsilon belongs to the render.
     pub epsilon: Option<f64>,
+    /// Wrong tests of spheres and planes, on purpose.
+    pub faults: Option<Faults>,
 }
 
 impl Scene {
@@ -152,6 +156,7 @@ impl Scene {
             .and(called(!self.point_lights.is_empty(), POINT_LIGHT))
             .and(called(self.point_lights.iter().any(|light| light.reach.is_some()), REACH))
             .and(called(self.epsilon.is_some(), EPSILON))
+            .and(called(self.faults.is_some(), FAULTS))
             .and(called(self.fog.is_some(), FOG))
             .and(called((0..).zip(&self.owners).any(|(primitive, owner)| primitive != *owner), COMPOUND))
             .and(called(self.objects.iter().any(|object| object.angular_emission.is_some()), ANGULAR_EMISSION))
@@ -199,6 +204,11 @@ impl Scene {
         limit: f64,
         tests: &mut Tests,
     ) -> Option<Hit> {
+        if X::EFFECTS.cover(FAULTS)
+            && let Some(faults) = &self.faults
+        {
+            return self.hit::<X>(ray, faults.nearest(&self.primitives, ray, from, limit, tests));
+        }
         let hierarchy = self.hierarchy.as_ref();
         let hit = self.hit::<X>(ray, self.primitives.nearest::<X>(hierarchy, ray, from, limit, tests))?;
         if X::EFFECTS.cover(Triangle::EFFECT) && self.primitives.is_doubtful(ray, &hit) {
@@ -301,6 +311,7 @@ impl Scene {
         scene.primitives = scene.primitives.scaled(factor);
         scene.point_lights = scene.point_lights.iter().map(|light| light.scaled(factor)).collect();
         scene.fog = scene.fog.map(|fog| fog.scaled(factor));
+        scene.faults = scene.faults.map(|faults| faults.scaled(factor));
         scene.hierarchy = scene.hierarchy.map(|hierarchy| hierarchy.scaled(factor));
         scene.lights = None;
         scene

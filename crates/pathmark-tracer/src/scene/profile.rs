@@ -92,4 +92,5 @@ features! {
     AngularEmission, ANGULAR_EMISSION, "angular-emission", "emission that depends on the angle to the normal";
     Epsilon, EPSILON, "epsilon", "a minimum distance of hits";
     Reach, REACH, "reach", "point lights with a limited reach";
+    Faults, FAULTS, "faults", "wrong on purpose: tests of spheres and planes as reports B and C have them";
 }

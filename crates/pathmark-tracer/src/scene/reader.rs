@@ -19,14 +19,14 @@
 //! emission = [0.0, 0.0, 0.0]   # optional
 //! ```
 //!
-//! A file may also have `[[point-lights]]`, a `[fog]` and a `[generator.NAME]`. With a base, every entry replaces the
+//! A file may also have `[[point-lights]]`, a `[fog]`, `[faults]` and a `[generator.NAME]`. With a base, every entry replaces the
 //! base's entry of that name. An object with the name of one of the base's objects replaces only the fields that it
 //! has, and `without` lists objects to leave out.
 
 use super::generator::{Generator, Made};
 use super::library::{CustomScene, Files, Folder, Source, source};
 use super::shape::{AnyShape, Primitives};
-use super::{Camera, Fog, Object, PointLight, Scene, USUAL_ESTIMATOR};
+use super::{Camera, Faults, Fog, Object, PointLight, Scene, USUAL_ESTIMATOR};
 use crate::digest::Fingerprint;
 use crate::error::{Error, InputError, Result};
 use crate::input::{locate, parse, radiance};
@@ -50,6 +50,7 @@ struct SceneFile {
     background: Option<Rgb>,
     camera: Option<CameraFile>,
     fog: Option<Fog>,
+    faults: Option<Faults>,
     point_lights: Option<Vec<PointLight>>,
     generator: Option<Generator>,
     #[serde(default)]
@@ -86,6 +87,7 @@ struct Draft {
     background: Option<Rgb>,
     camera: Option<Camera>,
     fog: Option<Fog>,
+    faults: Option<Faults>,
     point_lights: Vec<PointLight>,
     generator: Option<Generator>,
     parts: Vec<Part>,
@@ -148,6 +150,7 @@ pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: 
         hierarchy: None,
         lights: None,
         epsilon: None,
+        faults: draft.faults,
     };
     add_parts(&mut scene, draft.parts, &mut draft.hash)?;
     scene.resolve_coincident();
@@ -231,6 +234,7 @@ fn draft(source: &Rc<Source>, depth: usize, own: &[CustomScene]) -> Result<(Draf
     draft.background = file.background.or(draft.background);
     draft.camera = file.camera.map(Camera::from).or(draft.camera);
     draft.fog = file.fog.or(draft.fog);
+    draft.faults = file.faults.or(draft.faults);
     draft.point_lights = file.point_lights.unwrap_or(draft.point_lights);
     draft.generator = file.generator.or(draft.generator);
     let mut kept: BTreeSet<&str> = draft.parts.iter().map(|part| part.name.as_str()).collect();

@@ -78,7 +78,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     }
     let spread = interval.map_or_else(String::new, |interval| {
         let [low, high] = [interval.low, interval.high].map(|rate| short(1e-6 * rate, 3));
-        format!(", {} % interval {low} to {high}", short(100.0 * interval.level, 3))
+        format!(", {} % interval {low} to {high}", interval.percent())
     });
     print(&format!(
         "{}, {} primitives: {} rays from vertex to vertex of {} paths\n\

@@ -1,5 +1,5 @@
 //! How pieces get from the workers into the film: `--output slots | channel-piece | channel-pixel | locked | row-progress |
-//! shared-sum`.
+//! printed-progress | shared-sum`.
 //!
 //! Outputs differ only in how a worker waits when it delivers; the schedule is the same. The image is the same to the
 //! last bit: the film is put together by place, never by arrival.
@@ -9,6 +9,7 @@
 mod channel_piece;
 mod channel_pixel;
 mod locked;
+mod printed_progress;
 mod row_progress;
 mod shared_sum;
 mod slots;
@@ -54,5 +55,6 @@ outputs! {
     channel_pixel,
     locked,
     row_progress,
+    printed_progress,
     shared_sum,
 }

@@ -1,0 +1,157 @@
+//! Single figures on rows whose ratios follow from closed forms.
+
+use super::block::Block;
+use super::figures::blocks;
+use super::plot::drawing::Note;
+use super::tests::{results, row, svg, words};
+use crate::measure::Record;
+
+/// The values that the figure of that name draws.
+fn notes(blocks: &[Block], name: &str) -> Vec<Note> {
+    let figure = blocks.iter().find_map(|block| match block {
+        Block::Figure { stem, figure } if *stem == name => Some(figure.drawing().notes),
+        _ => None,
+    });
+    figure.unwrap_or_else(|| panic!("no figure {name}"))
+}
+
+/// The only value of a series at a place.
+fn value(notes: &[Note], series: &str, of: &str) -> f64 {
+    let own: Vec<f64> =
+        notes.iter().filter(|note| note.series == series && note.of == of).map(|note| note.value).collect();
+    assert_eq!(own.len(), 1, "{series}, {of}: {notes:?}");
+    own[0]
+}
+
+fn close(a: f64, b: f64) -> bool {
+    (a - b).abs() < 1e-9 * b.abs()
+}
+
+/// Ten strategies, of which `pool-1` takes twice as long as the others, and one that ran in another size.
+#[test]
+fn schedules_that_are_not_told_apart_are_marked_and_sizes_are_not_mixed() {
+    let mut rows = Vec::new();
+    for (width, strategies) in [(8, 0..10), (16, 10..11)] {
+        for repetition in 0..6 {
+            let noise = 1.0 + 0.01 * f64::from(repetition);
+            let own = |strategy: String, threads: usize, seconds: f64| {
+                let makespan_s = Some(seconds * noise);
+                Record { width, repetition, strategy, threads, makespan_s, ..row() }
+            };
+            rows.push(own("serial".to_string(), 1, 4.0));
+            rows.extend(strategies.clone().map(|index| {
+                // Those of even number are faster in even repetitions.
+                let turn = if (index + repetition) % 2 == 0 { 0.99 } else { 1.0 };
+                own(format!("pool-{index}"), 2, if index == 1 { 4.0 } else { 2.0 * turn })
+            }));
+        }
+    }
+    let blocks = blocks(&results(&["speedup"], "", rows).unwrap()).unwrap();
+    let (usual, others) = (notes(&blocks, "speedup"), notes(&blocks, "speedup-others"));
+    let names = |notes: &[Note]| notes.iter().map(|note| note.of.clone()).collect::<Vec<String>>();
+    assert_eq!(names(&usual).iter().filter(|name| name.starts_with('≈')).count(), 9, "{:?}", names(&usual));
+    assert!(names(&usual).contains(&"pool-1".to_string()), "{:?}", names(&usual));
+    assert_eq!(names(&others), ["pool-10, 16x6"]);
+    let text = svg(&blocks, "speedup");
+    assert!(text.contains("2 processors") && text.contains("8x6") && !text.contains("16x6"));
+}
+
+/// A kernel that needs a second to start and none for samples: short renders would show the start.
+#[test]
+fn kernels_are_compared_at_the_most_samples_that_both_have() {
+    let mut rows = Vec::new();
+    for repetition in 0..3 {
+        for (spp, kernel, seconds) in
+            [(4, "scalar", 4.0), (4, "lanes", 1.4), (64, "scalar", 64.0), (64, "lanes", 7.4), (256, "lanes", 26.6)]
+        {
+            let makespan_s = Some(seconds * (1.0 + 0.01 * f64::from(repetition)));
+            rows.push(Record { repetition, spp, kernel: kernel.to_string(), makespan_s, ..row() });
+        }
+    }
+    let blocks = blocks(&results(&["kernels"], "", rows).unwrap()).unwrap();
+    let notes = notes(&blocks, "kernels");
+    let [only] = &notes[..] else { panic!("{notes:?}") };
+    assert!(only.of.contains("64 spp") && close(only.value, 64.0 / 7.4), "{only:?}");
+}
+
+/// Two generators at two numbers of samples stand below each other, in seconds.
+#[test]
+fn generators_of_one_workload_share_a_row() {
+    let mut rows = Vec::new();
+    for (spp, sampler, seconds) in
+        [(4, "independent", 1.0), (4, "libc-rand", 3.0), (8, "independent", 2.0), (8, "libc-rand", 6.0)]
+    {
+        rows.push(Record { spp, sampler: sampler.to_string(), makespan_s: Some(seconds), ..row() });
+    }
+    let blocks = blocks(&results(&["generators"], "", rows).unwrap()).unwrap();
+    let notes = notes(&blocks, "generators");
+    assert_eq!(value(&notes, "libc-rand", "4 spp, serial, 1 thread"), 3.0);
+    assert_eq!(value(&notes, "independent", "8 spp, serial, 1 thread"), 2.0);
+}
+
+/// A render of n samples takes 1 + n seconds, so a sample of 4 takes 1.25 s and one of 16 takes 1.0625 s.
+#[test]
+fn the_seconds_of_a_sample_are_compared_with_those_of_the_longest_renders() {
+    let rows = (0..3).flat_map(|repetition| {
+        [4, 8, 16].map(|spp| Record { repetition, spp, makespan_s: Some(1.0 + f64::from(spp)), ..row() })
+    });
+    let blocks = blocks(&results(&["time-against-spp"], "", rows.collect()).unwrap()).unwrap();
+    let found = notes(&blocks, "time-per-sample");
+    let at = |spp: &str| found.iter().find(|note| note.of == spp).unwrap().value;
+    assert!(close(at("4"), 1.25 / 1.0625) && close(at("8"), 1.125 / 1.0625), "{found:?}");
+    assert!(!found.iter().any(|note| note.of == "16"), "the longest is 1 by construction");
+}
+
+/// An epsilon that adds 3 % of light, one that takes a hundredth of a percent, and one that is too small to matter.
+#[test]
+fn changes_of_light_have_a_side_and_a_place() {
+    let mut rows = Vec::new();
+    for seed in 1..=3 {
+        let light = 0.5 + 0.1 * seed as f64;
+        for (epsilon, factor, fireflies) in
+            [("", 1.0, 0), ("1", 1.03, 24), ("0.5", 0.9999, 12), ("1e-9", 1.0 + 1e-12, 0)]
+        {
+            let (epsilon, mean_radiance) = (epsilon.to_string(), Some(light * factor));
+            rows.push(Record { seed, epsilon, mean_radiance, fireflies: Some(fireflies), ..row() });
+        }
+    }
+    let more = "[figure.bias]\naxis = \"epsilon\"\nusual = \"exact\"";
+    let blocks = blocks(&results(&["bias"], more, rows).unwrap()).unwrap();
+    let light = notes(&blocks, "bias");
+    assert!((value(&light, "lighter", "1") - 3.0).abs() < 1e-9, "{light:?}");
+    assert!((value(&light, "darker", "0.5") - 0.01).abs() < 1e-9, "{light:?}");
+    assert_eq!(light.len(), 2, "{light:?}");
+    // 24 of 48 pixels.
+    assert!(close(notes(&blocks, "fireflies").iter().find(|note| note.of == "1").unwrap().value, 5e5));
+    assert!(words(&blocks).contains("change of the mean radiance against exact"));
+}
+
+/// Directions by the cosine leave eight times the squared error on the object, twice that of the image.
+#[test]
+fn roughness_compares_the_reports_way_on_the_object() {
+    let mut rows = Vec::new();
+    for seed in 1..=3 {
+        for (scene, object, image) in [("kd-ks-25", 0.08, 0.02), ("kd-ks-25-vndf", 0.01, 0.01)] {
+            let factor = 1.0 + 0.1 * seed as f64;
+            let (object_mse, mse) = (Some(object * factor), Some(image * factor));
+            rows.push(Record { seed, scene: scene.to_string(), object_mse, mse, ..row() });
+        }
+    }
+    let blocks = blocks(&results(&["roughness"], "", rows).unwrap()).unwrap();
+    let found = notes(&blocks, "roughness");
+    let error = found.iter().find(|note| note.series.starts_with("squared error")).unwrap();
+    assert!(close(error.value, 8.0), "{found:?}");
+}
+
+/// A slope is fitted to four numbers of samples, and not to three.
+#[test]
+fn three_points_have_no_slope() {
+    let text = |all: &[u32]| {
+        let rows = (1..=5).flat_map(|seed| {
+            all.iter().map(move |&spp| Record { seed, spp, mse: Some(0.1 / f64::from(spp)), ..row() })
+        });
+        let noisy = rows.map(|row| Record { mse: row.mse.map(|mse| mse * (1.0 + 0.01 * row.seed as f64)), ..row });
+        words(&blocks(&results(&["rmse-against-spp"], "", noisy.collect()).unwrap()).unwrap())
+    };
+    assert!(text(&[4, 8, 16, 32]).contains("5 seeds") && !text(&[4, 8, 16]).contains("fit: slope"));
+}
