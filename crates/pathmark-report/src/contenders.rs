@@ -126,8 +126,7 @@ pub(super) fn curves_by(rows: &[&Row], error: fn(&Row) -> Option<f64>) -> Vec<(C
     for row in rows {
         seeds.entry(row.seed).or_default().entry(row.spp).or_insert(row);
     }
-    let errors =
-        group(rows.iter().copied(), |row| row.spp).into_iter().map(|(spp, rows)| (spp, by_seed(&rows, error)));
+    let errors = group(rows.iter().copied(), |row| row.spp).into_iter().map(|(spp, rows)| (spp, by_seed(&rows, error)));
     let has_all = |errors: &BTreeMap<u64, f64>| errors.len() == seeds.len() && errors.values().all(|mse| *mse > 0.0);
     let whole: Vec<(u32, BTreeMap<u64, f64>)> = errors.filter(|(_, errors)| has_all(errors)).collect();
     let of_seed = |(seed, rows): (&u64, &BTreeMap<u32, &Row>)| {

@@ -63,7 +63,9 @@ pub(super) fn guards(trials: &mut Trials) {
         let material = GuardedKdKs { kd: Rgb { r: 0.3, g: 0.3, b: 0.25 }, eta: 12.85, roughness };
         let (mut worst, mut guarded): (f64, u64) = (0.0, 0);
         for k in 0..10_000 {
-            let towards = |of: i32| towards(f64::from(k % of + 1) / f64::from(40 * of) * f64::from(k % 41), f64::from(k % 61) / 61.0);
+            let towards = |of: i32| {
+                towards(f64::from(k % of + 1) / f64::from(40 * of) * f64::from(k % 41), f64::from(k % 61) / 61.0)
+            };
             let (wo, wi) = (towards(83), towards(71));
             if wo.z <= 0.0 || wi.z <= 0.0 {
                 continue;

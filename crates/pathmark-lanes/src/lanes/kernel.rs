@@ -15,7 +15,9 @@ use pathmark_tracer::estimator::PathRules;
 use pathmark_tracer::kernel::{FirstHits, Kernel, KernelEntry, KernelPlan, Planned, RenderOptions, Request, Start};
 use pathmark_tracer::material::Diffuse;
 use pathmark_tracer::math::Precision;
-use pathmark_tracer::scene::{ANGULAR_EMISSION, DiffuseOnly, FAULTS, FOG, LENS, POINT_LIGHT, Scan, Scene, Sphere, View};
+use pathmark_tracer::scene::{
+    ANGULAR_EMISSION, DiffuseOnly, FAULTS, FOG, LENS, POINT_LIGHT, Scan, Scene, Sphere, View,
+};
 use std::sync::Arc;
 
 #[derive(Clone, Copy)]
@@ -105,7 +107,13 @@ pub(crate) const MOST_IN_LANES: usize = 1 << f32::MANTISSA_DIGITS;
 /// The feature of a scene or of its settings that lanes have no code for.
 fn obstacle(request: &Request<'_>) -> Option<&'static str> {
     let Request { scene, spec, epsilon, .. } = request;
-    let features = [(FOG, "fog"), (LENS, "lens"), (POINT_LIGHT, "point-light"), (ANGULAR_EMISSION, "angular-emission"), (FAULTS, "faults")];
+    let features = [
+        (FOG, "fog"),
+        (LENS, "lens"),
+        (POINT_LIGHT, "point-light"),
+        (ANGULAR_EMISSION, "angular-emission"),
+        (FAULTS, "faults"),
+    ];
     let of_scene = features.into_iter().find(|(effect, _)| scene.effects().cover(*effect)).map(|(_, name)| name);
     let others = [
         (spec.effects.is_some(), "effects"),

@@ -30,9 +30,9 @@ pub use light::{Aim, Lights, one_minus_cos};
 pub use light::{AnyTarget, NO_LIGHT, TriangleTarget, per_steradian, point_of, towards_cap};
 pub use point_light::PointLight;
 pub use profile::{
-    ANGULAR_EMISSION, AllEffects, BACKGROUND, COMPOUND, DiffuseOnly, EPSILON, FAULTS, FEATURES, FOG, FogEffects, HIERARCHY,
-    LENS, LensEffects, POINT_LIGHT, PROFILES, ProfileEntry, ProfileVisitor, REACH, SceneryEffects, SmallptEffects,
-    SurfaceEffects, effect_names, with_profile,
+    ANGULAR_EMISSION, AllEffects, BACKGROUND, COMPOUND, DiffuseOnly, EPSILON, FAULTS, FEATURES, FOG, FogEffects,
+    HIERARCHY, LENS, LensEffects, POINT_LIGHT, PROFILES, ProfileEntry, ProfileVisitor, REACH, SceneryEffects,
+    SmallptEffects, SurfaceEffects, effect_names, with_profile,
 };
 pub use shape::{Nearest, PRIMITIVES, Plane, Primitive, Primitives, SHAPES, Sphere, Triangle, nearness};
 

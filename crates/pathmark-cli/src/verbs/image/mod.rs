@@ -50,7 +50,8 @@ fn convert(arguments: &Convert) -> Result<()> {
     files.reads("the input", input);
     files.writes("output", output)?;
     let (image, film) = read_picture(input)?;
-    let shown = if *auto_exposure && !format.linear { image_io::auto_exposed(&image, image.brightest()) } else { image };
+    let shown =
+        if *auto_exposure && !format.linear { image_io::auto_exposed(&image, image.brightest()) } else { image };
     let notes = film.map_or_else(Vec::new, |film| film.notes());
     image_io::write_with_notes(output, &shown, &notes)?;
     print(&format!("{}: {}x{}", output.display(), shown.width, shown.height))

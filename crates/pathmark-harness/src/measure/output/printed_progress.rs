@@ -4,8 +4,8 @@
 //! Cost: one lock, a text of some 80 characters and one call of the system for each row of each piece. The bars go to the
 //! system's null device, so a terminal's own cost is not in them, and the output of the program stays readable.
 
-use super::row_progress::RowProgress;
 use super::Entry;
+use super::row_progress::RowProgress;
 use crate::error::Error;
 use std::fs::OpenOptions;
 

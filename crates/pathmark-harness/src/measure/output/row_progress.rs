@@ -89,7 +89,10 @@ mod tests {
         shown.rewind().unwrap();
         shown.read_to_string(&mut text).unwrap();
         let bars: Vec<&str> = text.split_terminator('\r').collect();
-        assert_eq!(bars.iter().map(|bar| bar.split("] ").nth(1).unwrap()).collect::<Vec<_>>(), ["25 %", "50 %", "75 %", "100 %"]);
+        assert_eq!(
+            bars.iter().map(|bar| bar.split("] ").nth(1).unwrap()).collect::<Vec<_>>(),
+            ["25 %", "50 %", "75 %", "100 %"]
+        );
         assert_eq!(bars[1], format!("[{}>{}] 50 %", "=".repeat(35), " ".repeat(35)));
         assert_eq!(bars[3], format!("[{}>] 100 %", "=".repeat(70)));
     }
