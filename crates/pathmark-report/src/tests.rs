@@ -325,6 +325,29 @@ fn errors_of_display_values_are_drawn_where_an_experiment_asks_for_them() {
     assert!(refusal(&["rmse-against-spp"], "[figure.rmse-against-spp]\nvalues = \"gamma\"").contains("display"));
 }
 
+/// A scene with a fault beside the right one: half of the light, and half of the pixels are black.
+#[test]
+fn variants_of_a_scene_are_compared_with_the_usual_one() {
+    let of = |scene: &str, mean_radiance: f64, black_pixels: u64, seed: u64| Record {
+        scene: scene.to_string(),
+        scene_hash: scene.to_string(),
+        mean_radiance: Some(mean_radiance),
+        black_pixels: Some(black_pixels),
+        seed,
+        ..row()
+    };
+    let rows =
+        vec![of("box", 0.5, 0, 1), of("box", 0.6, 0, 2), of("box-fault", 0.25, 24, 1), of("box-fault", 0.3, 24, 2)];
+    let results = results(&["bias"], "[figure.bias]\naxis = \"scene\"\nusual = \"box\"", rows).unwrap();
+    let tables = blocks(&results).unwrap();
+    let told: Vec<[String; 4]> =
+        table(&tables).rows().map(|row| [0, 1, 3, 6].map(|column: usize| row[column].clone())).collect();
+    let expected = [["box", "box", "100.000", "0.000"], ["box", "box-fault", "50.000", "50.000"]];
+    let told: Vec<[&str; 4]> =
+        told.iter().map(|row| [0, 1, 2, 3].map(|k: usize| row[k].split(&[' ', ','][..]).next().unwrap())).collect();
+    assert_eq!(told, expected);
+}
+
 fn refusal(figures: &[&str], more: &str) -> String {
     let text = definition(figures, more);
     let definition = Definition::from_text(&Lab::built_in(), "mine", "mine.toml", &text).unwrap();

@@ -7,7 +7,7 @@ use crate::prelude::*;
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Options {
-    /// The axis that is varied: `epsilon`, `filter` or `clamp`.
+    /// The axis that is varied: `epsilon`, `filter`, `clamp`, or `scene` for scenes that are variants of the usual one.
     axis: Option<Varied>,
     usual: Option<String>,
 }
@@ -18,6 +18,7 @@ enum Varied {
     Epsilon,
     Filter,
     Clamp,
+    Scene,
 }
 
 /// The value of an axis in an image.
@@ -30,6 +31,9 @@ impl Varied {
             Self::Epsilon => ("epsilon", |image| &image.epsilon, |image| image.epsilon.clear()),
             Self::Filter => ("filter", |image| &image.filter, |image| image.filter.clear()),
             Self::Clamp => ("clamp", |image| &image.clamp, |image| image.clamp.clear()),
+            Self::Scene => {
+                ("variant", |image| &image.scene, |image| (image.scene, image.scene_hash) = Default::default())
+            }
         }
     }
 }
@@ -213,13 +217,20 @@ fn in_order(values: impl Iterator<Item = String>, usual: &str) -> Vec<String> {
 fn costs(results: &Results, of: Value, forget: fn(&mut ImageKey), usual: &str) -> Vec<Cost> {
     // Images are compared whatever the kernel: an approximation may exist for one kernel only, and kernels give the
     // same image.
-    let plain: Vec<&Row> = results.rows().filter(|row| of(&row.image).is_empty()).collect();
+    let is_plain = |row: &&Row| of(&row.image).is_empty() || of(&row.image) == usual;
+    let plain: Vec<&Row> = results.rows().filter(is_plain).collect();
     let black = |row: &Row| Some(row.black_pixels? as f64 / pixels(row));
     let of_black = |rows: &[&Row]| Repeats::of_images(rows.iter().copied(), forget, black);
     let plain_black = of_black(&plain);
     let plain = Repeats::of_images(plain.iter().copied(), forget, |row| row.mean_radiance);
-    let cells = results.by(|row| (row.scene.as_str(), of(&row.image), row.spp));
-    let cost = |((scene, value, spp), rows): ((&str, &str, u32), Vec<&Row>)| {
+    // Variants of a scene stand beside each other under one name.
+    let scene_of = |image: &ImageKey| {
+        let mut image = image.clone();
+        forget(&mut image);
+        if image.scene.is_empty() { usual.to_string() } else { image.scene }
+    };
+    let cells = results.by(|row| (scene_of(&row.image), of(&row.image), row.spp));
+    let cost = |((scene, value, spp), rows): ((String, &str, u32), Vec<&Row>)| {
         let rows = rows.into_iter().map(|row| (&row.image, row)).collect::<BTreeMap<_, _>>().into_values();
         let rows: Vec<&Row> = rows.collect();
         let light = Repeats::of_images(rows.iter().copied(), forget, |row| row.mean_radiance).over(&plain);
@@ -229,7 +240,7 @@ fn costs(results: &Results, of: Value, forget: fn(&mut ImageKey), usual: &str) -
         };
         let share = |value: fn(&Row) -> Option<f64>| Estimated::mean(&values(&rows, value));
         Some(Cost {
-            scene: scene.to_string(),
+            scene,
             value: if value.is_empty() { usual.to_string() } else { value.to_string() },
             spp,
             light: Estimated::mean(&light.values())?,

@@ -90,7 +90,7 @@ pub const FIGURES: &[FigureEntry] = entries! {
     estimators, "estimators", NoOptions, "speed to the same error relative to the first estimator, by scene";
     roulette, "roulette", Yardstick, "efficiency of each Russian roulette rule";
     bounces, "bounces", NoOptions, "light by number of bounces, and lengths of paths";
-    bias, "bias", bias::Options, "light, noise and doubtful pixels by epsilon, filter or clamp";
+    bias, "bias", bias::Options, "light, noise and doubtful pixels by epsilon, filter, clamp or variants of a scene";
     clamp_bias, "clamp-bias", clamp_bias::Options, "light lost by clamping each subpixel before averaging, by samples per pixel";
     time_against_spp, "time-against-spp", NoOptions, "seconds against samples per pixel, with the linear fit";
     speedup, "speedup", NoOptions, needs serial, "speedup, efficiency and Karp-Flatt serial fraction against threads";

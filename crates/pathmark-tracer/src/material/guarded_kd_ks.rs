@@ -81,7 +81,7 @@ impl Bsdf for GuardedKdKs {
         let fresnel = fresnel_dielectric(wo.z, self.eta);
         let masking = guarded(1.0, 1.0 + self.lambda(wo) + self.lambda(wi));
         let facets = fresnel * masking * self.density((wo + wi).normalized());
-        self.kd * ((1.0 - fresnel) * FRAC_1_PI) + Rgb::WHITE * guarded(facets, 4.0 * wo.z * wi.z)
+        self.kd * (FRAC_1_PI * (1.0 - fresnel)) + Rgb::WHITE * guarded(facets, 4.0 * wo.z * wi.z)
     }
 
     #[inline(always)]
