@@ -149,7 +149,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let seeds: BTreeSet<usize> = seeds.collect();
     let seeds = seeds.first().map_or_else(String::new, |least| counted(*least, "seed"));
     let mut first = LineChart {
-        title: title(&lines),
+        title: title(shown),
         subtitle: format!("{}, {}x{}, {}", main.0, main.1, main.2, results.run.machine.line()),
         caption: format!(
             "Numbers beside points: samples per pixel. Vertical: RMSE over seeds, at least {seeds}, 95 % confidence. Horizontal: time over processes. {}",
@@ -174,16 +174,17 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok([figure].into_iter().chain(finding).chain([prices(&lines, &goals), points(&lines)]).collect())
 }
 
-/// The result: the factor on the seconds that halves the error.
-fn title(lines: &[Line<'_>]) -> String {
-    let mut factors: Vec<f64> = lines.iter().filter_map(Line::cost_of_half).collect();
+/// The result in the scene with the most lines: the factor on the seconds that halves the error.
+fn title(lines: &[&Line<'_>]) -> String {
+    let mut factors: Vec<f64> = lines.iter().filter_map(|line| line.cost_of_half()).collect();
     factors.sort_by(f64::total_cmp);
+    let scene = lines.first().map_or("", |line| line.of.setting.0);
     match factors.as_slice() {
         [] => "What accuracy costs in time".to_string(),
         [least, .., most] if format!("{least:.1}") != format!("{most:.1}") => {
-            format!("Half the error costs {least:.1} to {most:.1} times the seconds")
+            format!("Half the error costs {least:.1} to {most:.1} times the seconds: {scene}")
         }
-        [factor, ..] => format!("Half the error costs {factor:.1} times the seconds"),
+        [factor, ..] => format!("Half the error costs {factor:.1} times the seconds: {scene}"),
     }
 }
 
@@ -291,7 +292,7 @@ mod tests {
             assert!(beyond[5].starts_with("not measured: not reached at 64 spp"), "{beyond:?}");
         }
         let figure = svg(&blocks, "rmse-against-time");
-        assert!(figure.contains("Half the error costs 4.0 times the seconds"));
+        assert!(figure.contains("Half the error costs 4.0 times the seconds: cornell"));
         // Both scenes have a panel, and the points of one line tell their samples.
         assert!(figure.contains("sky, 8x6") && figure.contains("\n16\n") && figure.contains("\n64\n"));
     }
