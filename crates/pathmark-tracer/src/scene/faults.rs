@@ -113,8 +113,7 @@ mod tests {
     /// The ball has radius 100 around (150, 100, 200); the floor is y = 0.
     #[test]
     fn near_roots_of_spheres_are_dropped_and_those_of_triangles_are_not() {
-        let [half, zero] =
-            ["cornell-mesh-ball-epsilon-half", "cornell-mesh-ball-epsilon-zero"].map(|name| load(name).unwrap());
+        let [half, zero] = ["cornell-mesh-ball-half", "cornell-mesh-ball-zero"].map(|name| load(name).unwrap());
         let (below, up) = ([150.0, -0.25, 200.0], [0.0, 1.0, 0.0]);
         // The floor at 0.25, and the ball at the same distance, which goes after it.
         assert_eq!(distance(&half, below, up, None), Some(0.25));
