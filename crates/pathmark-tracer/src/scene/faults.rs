@@ -34,7 +34,7 @@ fn some_length<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>
 
 impl Faults {
     /// The distance to a sphere; zero, negative or NaN if the ray misses it. `exactly` is the right one.
-    fn to_sphere(&self, sphere: &Sphere, ray: &Ray, exactly: f64) -> f64 {
+    fn to_sphere(self, sphere: &Sphere, ray: &Ray, exactly: f64) -> f64 {
         if !self.smaller_root_only && self.sphere_epsilon.is_none() {
             return exactly;
         }
@@ -46,7 +46,7 @@ impl Faults {
         if t > self.sphere_epsilon.unwrap_or(0.0) { t } else { f64::NAN }
     }
 
-    fn to_plane(&self, plane: &Plane, ray: &Ray, exactly: f64) -> f64 {
+    fn to_plane(self, plane: &Plane, ray: &Ray, exactly: f64) -> f64 {
         if dot(plane.normal, ray.direction).abs() < self.plane_limit { f64::NAN } else { exactly }
     }
 
