@@ -34,7 +34,7 @@ fn some_length<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>
 
 impl Faults {
     /// The distance to a sphere; zero, negative or NaN if the ray misses it. `exactly` is the right one.
-    fn to_sphere(&self, sphere: &Sphere, ray: &Ray, exactly: f64) -> f64 {
+    fn to_sphere(self, sphere: &Sphere, ray: &Ray, exactly: f64) -> f64 {
         if !self.smaller_root_only && self.sphere_epsilon.is_none() {
             return exactly;
         }
@@ -46,7 +46,7 @@ impl Faults {
         if t > self.sphere_epsilon.unwrap_or(0.0) { t } else { f64::NAN }
     }
 
-    fn to_plane(&self, plane: &Plane, ray: &Ray, exactly: f64) -> f64 {
+    fn to_plane(self, plane: &Plane, ray: &Ray, exactly: f64) -> f64 {
         if dot(plane.normal, ray.direction).abs() < self.plane_limit { f64::NAN } else { exactly }
     }
 
@@ -113,8 +113,7 @@ mod tests {
     /// The ball has radius 100 around (150, 100, 200); the floor is y = 0.
     #[test]
     fn near_roots_of_spheres_are_dropped_and_those_of_triangles_are_not() {
-        let [half, zero] =
-            ["cornell-mesh-ball-epsilon-half", "cornell-mesh-ball-epsilon-zero"].map(|name| load(name).unwrap());
+        let [half, zero] = ["cornell-mesh-ball-half", "cornell-mesh-ball-zero"].map(|name| load(name).unwrap());
         let (below, up) = ([150.0, -0.25, 200.0], [0.0, 1.0, 0.0]);
         // The floor at 0.25, and the ball at the same distance, which goes after it.
         assert_eq!(distance(&half, below, up, None), Some(0.25));

@@ -75,12 +75,14 @@ mod tests {
     use super::*;
     use crate::film::{Decomposition, Sections};
     use std::io::{Read, Seek};
+    use std::slice::from_ref;
     use std::sync::Arc;
 
     #[test]
     fn each_row_shows_a_bar_and_the_last_one_is_full() {
-        let plan = Arc::new(Decomposition::parse("bands:2").unwrap().plan(8, 4, &(0..1)));
-        let films = Sections::new(8, 4, &[0..1]).unwrap();
+        let samples = 0..1;
+        let plan = Arc::new(Decomposition::parse("bands:2").unwrap().plan(8, 4, &samples));
+        let films = Sections::new(8, 4, from_ref(&samples)).unwrap();
         let mut shown = tempfile::tempfile().unwrap();
         let delivery = Delivery { plan, films, threads: 1 };
         let progress = RowProgress::new(delivery, Some(shown.try_clone().unwrap())).unwrap();
