@@ -5,13 +5,12 @@ use super::kernel::{Lanes, Version};
 use super::packet::{NO_PARTS, NextPart, Packet, Parts};
 use super::rays::LanesOf;
 use super::supply::Supply;
-use super::vertex::decides;
+use super::vertex::Materials;
 use super::window::Window;
 use crate::simd::{Float, MOST_LANES, Work, on_level, sizes_of};
 use pathmark_tracer::effect::EffectSet;
 use pathmark_tracer::film::{Piece, TileBuffer};
 use pathmark_tracer::kernel::{Counts, Kernel};
-use pathmark_tracer::material::Dielectric;
 use pathmark_tracer::math::Rgb;
 #[cfg(feature = "lane-profiles")]
 use pathmark_tracer::scene::SmallptEffects;
@@ -27,7 +26,7 @@ impl Lanes {
         packet.collected.g.store(&mut g);
         packet.collected.b.store(&mut b);
         for lane in LanesOf(ended) {
-            if decides::<X>(Dielectric::EFFECT) && self.rules.splits > 0 && V::apart(NextPart { packet, lane }) {
+            if Materials::<X>::HAVE_GLASS && self.rules.splits > 0 && V::apart(NextPart { packet, lane }) {
                 packet.alive |= 1 << lane;
             } else {
                 window.give_back(packet.slots[lane], Rgb { r: r[lane].into(), g: g[lane].into(), b: b[lane].into() });

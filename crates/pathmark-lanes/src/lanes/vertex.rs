@@ -6,25 +6,25 @@ use super::packet::{Arrival, Packet, Part, Vertex, colour, own_root, vector};
 use super::rays::LanesOf;
 use super::tables::{GIVES_OFF, Kind};
 use crate::simd::{Apart, Float, MOST_LANES, Mask, Number, Words};
-use pathmark_tracer::effect::{EffectSet, Effects, all};
+use pathmark_tracer::effect::{EffectSet, all};
 use pathmark_tracer::kernel::Counts;
-use pathmark_tracer::material::{Density, MATERIALS, Mirror};
+use pathmark_tracer::material::{Density, Dielectric, MATERIALS, Mirror};
 use pathmark_tracer::math::{
     Bits, Frame, Ray, Rgb, Vec3, curved_normal, dot, fresnel_dielectric, fresnel_schlick, reflect, refract,
 };
 use pathmark_tracer::sampling::{Purpose, cosine_hemisphere};
 use pathmark_tracer::scene::{AllEffects, Scene};
+use std::marker::PhantomData;
 
-/// Materials that lanes have no code for: those of the largest profile alone.
-const OTHERS: Effects = all(MATERIALS);
+/// The materials that the code for a profile contains. Constants and no functions: a branch on a constant is left out
+/// before anything is inlined, and calls here made renders of smallpt's box take an eighth longer.
+pub(super) struct Materials<X>(PhantomData<X>);
 
-/// Whether the code for a profile contains these materials. It is a constant, so that other code is not compiled.
-pub(super) const fn decides<X: EffectSet>(materials: Effects) -> bool {
-    X::EFFECTS.cover(materials)
-}
-
-const fn is_diffuse_only<X: EffectSet>() -> bool {
-    !decides::<X>(Mirror::EFFECT)
+impl<X: EffectSet> Materials<X> {
+    const ARE_DIFFUSE: bool = !X::EFFECTS.cover(Mirror::EFFECT);
+    pub(super) const HAVE_GLASS: bool = X::EFFECTS.cover(Dielectric::EFFECT);
+    /// Those that lanes have no code for.
+    const HAVE_OTHERS: bool = X::EFFECTS.cover(all(MATERIALS));
 }
 
 /// Sampled directions of scattering.
@@ -162,7 +162,7 @@ impl Lanes {
         let density = wi.z * V::splat(std::f64::consts::FRAC_1_PI);
         let mut scattered = Scattered { wi, weight: vertex.albedo, is_delta: none, density, absorbed: 0 };
         let mut split = None;
-        if is_diffuse_only::<X>() {
+        if Materials::<X>::ARE_DIFFUSE {
             return (scattered, split);
         }
         let going_on = at.lanes & !V::Mask::from_bits(ended);
@@ -179,7 +179,7 @@ impl Lanes {
             split = self.refract::<V, AIMS>(at, vertex, wo, numbers[0], is_glass, &mut scattered);
         }
         let is_other = others & vertex.kind.equal(V::splat(Kind::Other.number()));
-        if decides::<X>(OTHERS) && is_other.any() {
+        if Materials::<X>::HAVE_OTHERS && is_other.any() {
             let (inside, primitive) = (at.inside.bits(), at.primitive);
             scattered = V::apart(OneByOne { kernel: self, primitive, wo, numbers, lanes: is_other, inside, scattered });
         }
@@ -320,7 +320,7 @@ fn leave<V: Float, X: EffectSet>(
     ended: &mut u32,
 ) {
     let mut direction = at.frame.to_world(scattered.wi);
-    if !is_diffuse_only::<X>() && scattered.is_delta.any() {
+    if !Materials::<X>::ARE_DIFFUSE && scattered.is_delta.any() {
         direction = Vec3::select(scattered.is_delta, direction.normalized(), direction);
     }
     let mut splits = 0;
