@@ -88,7 +88,7 @@ const EXCEPTIONS: &[(&str, &str, &[&str])] = &[
     (
         "rank_forecasts.rs",
         "costs of messages; a prediction over the time of the same run; forecasts of the same jobs",
-        &["/ LOOK.as_secs_f64()", "pair[0] / pair[1]", "serial_s / makespan_s", "row.speedup / (row.crew.ranks"],
+        &["/ LOOK.as_secs_f64()", "pair[0] / pair[1]", "work_s / makespan_s", "row.speedup.value / (row.crew.ranks"],
     ),
 ];
 

@@ -37,6 +37,7 @@ fn every_key_of_a_scene_file_is_documented() {
         "about = ''\nnonsense = 1\n".to_string(),
         object("nonsense = 1"),
         "about = ''\n[fog]\nnonsense = 1\n".to_string(),
+        "about = ''\n[faults]\nnonsense = 1\n".to_string(),
         "about = ''\n[[point-lights]]\nnonsense = 1\n".to_string(),
     ];
     let mut names = BTreeSet::new();
