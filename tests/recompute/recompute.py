@@ -8,8 +8,8 @@ experiments/claims/*.toml, the numbers from FOLDER/EXPERIMENT/records.csv. It ne
 quantiles of Student's t come from the incomplete beta function, those of the median from binomial sums.
 
 Values and ends of intervals must agree to nine digits, and verdicts must be the same. A difference ends with code 1.
-Simulated forecasts are counted and not recomputed; they replay traces, which the program's tests compare with other
-schedulers.
+Simulated forecasts, failed hard cases and the list of guards are counted and not recomputed: they are not statistics of
+rows.
 """
 
 import csv
@@ -201,7 +201,7 @@ def ratios(rows, over, named, column):
     return [(run, row, ratio) for run, row, ratio in found if 0 < ratio < math.inf]
 
 
-def per_seed(rows, column, without=("spp",)[:0]):
+def per_seed(rows, column):
     """The mean over images of each seed; an image that a seed lacks is left out for all."""
     images = defaultdict(dict)
     for _, row in rows:
@@ -354,16 +354,6 @@ def judge(claim, folders):
         return "not-comparable", together
     told = verdict(together, claim)
     return told if all(verdict(found, claim) == told for _, found, _ in parts) else "open", together
-
-
-def table_value(claim, folders):
-    """A count of failed hard cases, or a value in the list of guards."""
-    if claim["statistic"] == "case":
-        for path in (folder / "check" / "cases.csv" for folder in folders):
-            if path.is_file():
-                rows = {row["id"]: row for row in csv.DictReader(path.open(newline=""))}
-                return (sum(rows[name]["pass"] != "true" for name in claim["ids"]),) * 3
-    return None
 
 
 def main(listing, *folders):
