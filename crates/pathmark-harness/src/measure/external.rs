@@ -15,7 +15,7 @@ pub struct ExternalRun {
     pub image: Image,
     /// Seconds from its start to its end, start-up and writing included.
     pub wall_s: f64,
-    /// Seconds of rendering as the program tells them: the last line of its output that begins with [`SECONDS`].
+    /// Seconds of rendering as the program tells them: the last line of its output that begins with `seconds =`.
     pub told_s: Option<f64>,
     pub cpu_s: Option<[f64; 2]>,
 }

@@ -64,7 +64,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     chart.dodge = 8.0;
     chart.subtitle = results.workload();
     let other = prototype.as_ref().map_or("", |_| {
-        " Prototype: an independent program of a few lines with the same estimator, whose values the experiment's file gives, without intervals."
+        " Prototype: another program with the same estimator; the experiment's file gives its values, without intervals."
     });
     chart.caption = format!("Bars: 95 % interval over seeds. The limit is the clamped image at {largest} spp.{other}");
     let apart = losses.iter().filter_map(|loss| Some((loss.lost.value - loss.prototype?).abs())).reduce(f64::max);
