@@ -92,7 +92,7 @@ impl Results {
         self.rows.first()
     }
 
-    /// The kept traces of the serial runs with the most jobs: see [`Self::traces_like_typical`].
+    /// The kept traces of the serial runs with the most jobs, of runs like the typical one.
     pub fn largest_serial_traces(&self) -> Result<Vec<TraceFile>> {
         let serial: Vec<&Row> = self.rows().filter(|row| row.schedule.is_serial()).collect();
         let most = serial.iter().map(|row| row.jobs).max();
