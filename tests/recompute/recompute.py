@@ -19,6 +19,7 @@ import tomllib
 from collections import defaultdict
 from pathlib import Path
 from statistics import fmean, median, variance
+from typing import NamedTuple
 
 csv.field_size_limit(1 << 24)
 
@@ -83,7 +84,11 @@ def normal_quantile(level):
     return bisect(lambda z: math.erf(z / math.sqrt(2)) > level, 0, 40)
 
 
-# Estimates: (value, low, high); `None` ends for a single unit.
+class Estimate(NamedTuple):
+    value: float
+    low: float | None  # as `high`, `None` for a single unit
+    high: float | None
+    judged: bool = True  # whether it has a verdict of its own; the mean of one or two units has none
 
 
 def t_interval(values, level):
@@ -107,15 +112,15 @@ def typical(values, level, is_ratio):
     if not values:
         return None
     if len(values) > 1 and len(set(values)) == 1:
-        return values[0], values[0], values[0]
+        return Estimate(values[0], values[0], values[0])
     if len(values) >= 6 and (ends := median_ends(values, level)):
-        return median(values), *ends
+        return Estimate(median(values), *ends)
     to, back = (math.log, math.exp) if is_ratio else (float, float)
     scaled = [to(value) for value in values]
     if len(values) == 1:
-        return back(fmean(scaled)), None, None
+        return Estimate(back(fmean(scaled)), None, None, False)
     low, high = t_interval(scaled, level)
-    return back(fmean(scaled)), back(low), back(high)
+    return Estimate(back(fmean(scaled)), back(low), back(high), len(values) > 2)
 
 
 def line(points, level=None):
@@ -130,7 +135,7 @@ def line(points, level=None):
         return slope
     rest = sum((b - y - slope * (a - x)) ** 2 for a, b in zip(xs, ys))
     half = t_quantile(level, n - 2) * math.sqrt(rest / (n - 2) / squares)
-    return slope, slope - half, slope + half
+    return Estimate(slope, slope - half, slope + half)
 
 
 # Rows.
@@ -220,7 +225,7 @@ IMAGE = [name for name in SETTINGS if name not in "decomposition strategy output
 def jackknife(items, statistic, level):
     n, whole = len(items), statistic(items)
     pseudo = [n * whole - (n - 1) * statistic(items[:i] + items[i + 1 :]) for i in range(n)]
-    return fmean(pseudo), *t_interval(pseudo, level)
+    return Estimate(fmean(pseudo), *t_interval(pseudo, level))
 
 
 def rmse_slope(rows, level):
@@ -239,11 +244,12 @@ def mean_ratio(rows, over, column, level):
     errors = [variance(side) / len(side) / fmean(side) ** 2 for side in sides]
     degrees = sum(errors) ** 2 / sum(e * e / (len(s) - 1) for e, s in zip(errors, sides))
     value, factor = fmean(sides[0]) / fmean(sides[1]), math.exp(t_quantile(level, degrees) * math.sqrt(sum(errors)))
-    return value, value / factor, value * factor
+    return Estimate(value, value / factor, value * factor)
 
 
 def ranks(values):
-    return [sum(other < value for other in values) + (sum(other == value for other in values) + 1) / 2 for value in values]
+    below, equal = (lambda v: sum(other < v for other in values)), (lambda v: values.count(v))
+    return [below(value) + (equal(value) + 1) / 2 for value in values]
 
 
 def rank_correlation(rows, claim, level):
@@ -258,27 +264,28 @@ def rank_correlation(rows, claim, level):
     rho = sum((p - x) * (q - y) for p, q in zip(a, b)) / spread(a, x) / spread(b, y)
     centre = math.atanh(max(-0.999999, min(0.999999, rho)))
     half = normal_quantile(level) * math.sqrt(1.06 / (n - 3))
-    return rho, math.tanh(centre - half), math.tanh(centre + half)
+    return Estimate(rho, math.tanh(centre - half), math.tanh(centre + half))
 
 
 # Claims.
 
 
 def measure(claim, runs, comparable, level):
-    """The statistic of the rows of some runs: (value, low, high), or `None`. `runs`: the rows of each."""
+    """The statistic of the rows of some runs, or `None`. `runs`: the rows of each."""
     wanted, kind = claim.get("rows", {}), claim["statistic"]
     everything = [(run, row) for run, rows in enumerate(runs) for row in rows]
     rows = [(run, row) for run, row in everything if admits(row, wanted) and admits(row, comparable)]
     over = [(run, row) for run, row in everything if "over" in claim and admits(row, claim["over"])]
     unit, column = claim.get("unit", "repetition"), claim.get("column")
     if kind == "value":
-        per = claim.get("per")
-        pairs = [(run, row, number(row, column), number(row, per) if per else 1.0) for run, row in rows]
-        values = [(run, row, a / b) for run, row, a, b in pairs if a is not None and b]
+        sums = [column, *([claim["plus"]] if "plus" in claim else [])]
+        below = (lambda row: number(row, claim["per"])) if "per" in claim else (lambda row: 1.0)
+        parts = [(run, row, [number(row, name) for name in sums], below(row)) for run, row in rows]
+        values = [(run, row, sum(above) / per) for run, row, above, per in parts if None not in above and per]
         return of_units(values, unit, level, False)
     if kind == "count":
         values = [number(row, column) for _, row in rows if number(row, column) is not None]
-        return (sum(values),) * 3 if values else None
+        return Estimate(*(sum(values),) * 3) if values else None
     if kind in ("paired-ratio", "speedup"):
         named = [*wanted, *claim["over"]]
         found = ratios(rows, over, named, column or "makespan_s")
@@ -293,7 +300,7 @@ def measure(claim, runs, comparable, level):
             if row["checksum"]:
                 images[run, tuple(row.get(name, "") for name in IMAGE)].append(row["checksum"])
         most = max((len(set(sums)) for sums in images.values() if len(sums) > 1), default=None)
-        return None if most is None else (most,) * 3
+        return None if most is None else Estimate(*(most,) * 3)
     if not rows:
         return None
     if kind == "rmse-slope":
@@ -325,7 +332,7 @@ def predicted(claim):
 
 
 def verdict(found, claim):
-    (low, high), (_, own_low, own_high) = predicted(claim), found
+    (low, high), (_, own_low, own_high, _) = predicted(claim), found
     if own_low is None:
         return "open"
     if low <= own_low and own_high <= high:
@@ -334,7 +341,7 @@ def verdict(found, claim):
 
 
 def judge(claim, folders):
-    """(verdict, (value, low, high)) of a claim; the verdict alone if nothing is measured."""
+    """Verdict and estimate of a claim; the verdict alone if nothing is measured."""
     level, comparable = claim["level"], claim.get("comparable-if", {})
     parts = []
     for folder in folders:
@@ -353,14 +360,16 @@ def judge(claim, folders):
     if not best and not claim.get("a-fortiori"):
         return "not-comparable", together
     told = verdict(together, claim)
-    return told if all(verdict(found, claim) == told for _, found, _ in parts) else "open", together
+    alone = [found for _, found, _ in parts if found.judged]
+    return told if all(verdict(found, claim) == told for found in alone) else "open", together
 
 
 def main(listing, *folders):
     folders = sorted(Path(folder).resolve() for folder in folders)
     with open(listing, newline="") as file:
         told = {row["claim"]: row for row in csv.DictReader(file)}
-    claims = [claim for path in sorted(ROOT.glob("experiments/claims/*.toml")) for claim in tomllib.loads(path.read_text())["claim"]]
+    ledgers = [tomllib.loads(path.read_text()) for path in sorted(ROOT.glob("experiments/claims/*.toml"))]
+    claims = [claim for ledger in ledgers for claim in ledger["claim"]]
     counts, failures = defaultdict(int), []
     for claim in claims:
         row, kind = told[str(claim["id"])], claim.get("statistic", "none")
@@ -369,12 +378,14 @@ def main(listing, *folders):
             continue
         own_verdict, found = judge(claim, folders)
         counts["rows"] += 1
+        counts["measured"] += found is not None
         printed = [float(row[name]) if row[name] else None for name in ("measured", "low", "high")]
-        is_same = lambda a, b: a is None or b is None or math.isclose(a, b, rel_tol=TOLERANCE, abs_tol=1e-12)
-        pairs = list(zip(found or (None,) * 3, printed))
+        is_same = lambda a, b: a is b or None not in (a, b) and math.isclose(a, b, rel_tol=TOLERANCE, abs_tol=1e-12)
+        pairs = zip(found or (None,) * 3, printed)
         if own_verdict != row["verdict"].replace(" ", "-") or not all(is_same(a, b) for a, b in pairs):
             failures.append(f"claim {claim['id']}: {own_verdict} {found}, and printed {row['verdict']} {printed}")
-    print(f"recomputed {counts['rows']} claims; not of rows: " + ", ".join(f"{n} {kind}" for kind, n in counts.items() if kind != "rows"))
+    others = ", ".join(f"{n} {kind}" for kind, n in counts.items() if kind not in ("rows", "measured"))
+    print(f"recomputed {counts['rows']} claims, {counts['measured']} of them with a value; not of rows: {others}")
     print("\n".join(failures) if failures else "all agree")
     return 1 if failures or not counts["rows"] else 0
 

@@ -82,6 +82,21 @@ impl Results {
         TimingConcerns::of(self.rows.iter().map(|row| row.warnings.as_str()))
     }
 
+    /// Workers that can run at the same time, where cores of a slower kind count by their speed.
+    pub(super) fn weight_in_use(&self, threads: usize) -> f64 {
+        let machine = &self.run.machine;
+        machine.layout.weight(threads.min(machine.processors))
+    }
+
+    /// A sentence about the weights of cores; empty if all are alike.
+    pub(super) fn weights_in_words(&self) -> &'static str {
+        if self.run.machine.layout.kinds.len() > 1 {
+            " Cores of this machine differ in speed, so each counts by its capacity, the fastest first."
+        } else {
+            ""
+        }
+    }
+
     /// How many rows did not fail.
     pub(super) fn len(&self) -> usize {
         self.rows.len()

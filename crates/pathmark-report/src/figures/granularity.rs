@@ -14,9 +14,9 @@ pub(super) struct Options {
 
 /// The serial runs, and the seconds of their jobs.
 struct Baseline<'a> {
+    results: &'a Results,
     serial: Serial<'a>,
     per_job: BTreeMap<(ImageKey, &'a str), f64>,
-    processors: usize,
 }
 
 impl<'a> Baseline<'a> {
@@ -27,12 +27,12 @@ impl<'a> Baseline<'a> {
             Some((key, row.busy_sum_s? / row.jobs as f64))
         });
         let per_job = gathered(jobs).into_iter().filter_map(|(key, times)| Some((key, median(&times)?))).collect();
-        Ok(Self { serial: results.serial()?, per_job, processors: results.run.machine.processors })
+        Ok(Self { results, serial: results.serial()?, per_job })
     }
 
-    /// The workers that can run at the same time.
+    /// The workers that can run at the same time, by their weights.
     fn in_use(&self, row: &Row) -> f64 {
-        row.threads.min(self.processors).max(1) as f64
+        self.results.weight_in_use(row.threads.max(1))
     }
 
     /// The time of the fastest serial run over the makespan times the number of workers in use.
@@ -60,7 +60,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     });
     let cells: Vec<((String, f64), Repeats)> = cells.collect();
     let efficiencies = medians(cells.clone(), results.stopping());
-    let caption = bars(efficiencies.iter().map(|(_, efficiency)| *efficiency));
+    let caption = bars(efficiencies.iter().map(|(_, efficiency)| *efficiency)) + results.weights_in_words();
     let lines = gathered(efficiencies.into_iter().map(|((name, job_s), efficiency)| (name, (job_s, efficiency))));
     let line = |(index, (strategy, mut places)): (usize, (String, Vec<(f64, Estimated)>))| {
         places.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -198,4 +198,36 @@ fn overhead(results: &Results, baseline: &Baseline<'_>) -> Block {
         bars(extra.iter().map(|(_, told)| *told)),
     );
     Block::figure("overhead", plot)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::Record;
+    use crate::tests::{results, row};
+
+    /// Work of 12 s takes 8 s on a fast core and one of half its speed: that is all of both, and three quarters of two fast ones.
+    #[test]
+    fn slow_cores_count_by_their_capacity() {
+        let row = |strategy: &str, threads: usize, seconds: f64| {
+            let strategy = strategy.to_string();
+            Record { strategy, threads, makespan_s: Some(seconds), busy_sum_s: Some(12.0), ..row() }
+        };
+        let mut results = results(&["granularity"], "", vec![row("serial", 1, 12.0), row("pool", 2, 8.0)]).unwrap();
+        let told = |results: &Results| {
+            let baseline = Baseline::of(results).unwrap();
+            let pool: Vec<&Row> = results.rows().filter(|row| row.threads == 2).collect();
+            let jobs = pool[0].jobs as f64;
+            let extra_s: Vec<f64> = baseline.extra_ns(pool.clone()).values().iter().map(|ns| ns * jobs / 1e9).collect();
+            (baseline.efficiency(&pool).values(), extra_s)
+        };
+        let kinds = serde_json::json!([{"capacity": 1024, "processors": "1"}, {"capacity": 512, "processors": "0"}]);
+        for (layout, efficiency, extra_s) in
+            [(serde_json::json!({}), 0.75, 4.0), (serde_json::json!({"allowed": "0-1", "kinds": kinds}), 1.0, 0.0)]
+        {
+            results.run.machine.layout = serde_json::from_value(layout).unwrap();
+            let (found, extra) = told(&results);
+            assert!((found[0] - efficiency).abs() < 1e-12 && (extra[0] - extra_s).abs() < 1e-9, "{found:?} {extra:?}");
+        }
+    }
 }

@@ -92,26 +92,12 @@ impl Speedups<'_> {
         threads.min(self.processors)
     }
 
-    /// The same, where cores of a slower kind count by their speed.
-    fn weight_in_use(&self, threads: usize) -> f64 {
-        self.results.run.machine.layout.weight(self.in_use(threads))
-    }
-
-    /// A sentence about the weights of cores; empty if all are alike.
-    fn weights(&self) -> &'static str {
-        if self.results.run.machine.layout.kinds.len() > 1 {
-            " Cores of this machine differ in speed, so each counts by its capacity, the fastest first."
-        } else {
-            ""
-        }
-    }
-
     fn has_a_thread_per_job(&self, schedule: &Schedule) -> bool {
         !self.asked.is_empty() && !self.asked.contains(&schedule.key.threads)
     }
 
     fn figures(&self, contest: Option<&Contest<'_>>) -> Vec<Block> {
-        let per_processor = |speedup: f64, threads: usize| speedup / self.weight_in_use(threads);
+        let per_processor = |speedup: f64, threads: usize| speedup / self.results.weight_in_use(threads);
         let strategies: BTreeSet<&str> = self.all.iter().map(|(schedule, _)| schedule.name.as_str()).collect();
         if strategies.len() <= MOST_LINES {
             let (speedup, efficiency) = (self.speedup_chart(), self.efficiency_chart(&per_processor));
@@ -125,7 +111,7 @@ impl Speedups<'_> {
         let titles = ["Efficiency by strategy", "speedup per processor in use"];
         let efficiency = self.dots(titles, &per_processor, true, contest).map(|mut plot| {
             plot.guides = vec![(1.0, "ideal".to_string())];
-            plot.caption += self.weights();
+            plot.caption += self.results.weights_in_words();
             plot
         });
         let plots = [
@@ -152,7 +138,7 @@ impl Speedups<'_> {
             .estimated("speedup", Decimals(3), |(_, speedup)| Estimated::from(*speedup))
             .number("efficiency per thread", Decimals(3), |(s, speedup)| efficiency(speedup.value, s.key.threads))
             .number("efficiency per processor in use", Decimals(3), |(s, speedup)| {
-                Some(speedup.value / self.weight_in_use(s.key.threads)).filter(|value| value.is_finite())
+                Some(speedup.value / self.results.weight_in_use(s.key.threads)).filter(|value| value.is_finite())
             })
             .number("work inflation", Decimals(3), |(schedule, _)| work_inflation.get(schedule).copied())
             .estimated("e, p = threads", Decimals(3), |own| fraction(own, own.0.key.threads))
@@ -331,7 +317,7 @@ impl Speedups<'_> {
 
     fn efficiency_chart(&self, per_processor: &dyn Fn(f64, usize) -> f64) -> LineChart {
         let y = Axis::linear("speedup per processor in use").including([0.5, 1.05]);
-        let weights = self.weights();
+        let weights = self.results.weights_in_words();
         let caption = &format!("Processors in use: the smaller of threads and processors.{weights} {}", self.bars());
         let mut chart = self.chart("Efficiency against threads", y, self.series(per_processor), caption);
         chart.overlays = vec![Overlay::guide("ideal: 1", Curve::Line { intercept: 1.0, slope: 0.0 })];
