@@ -43,7 +43,7 @@ ours_mitsuba() {
 theirs_mitsuba() {
   local seconds=0
   for half in 0 1; do
-    seconds=$(python3 experiments/peers/mitsuba_ball.py "$triangles" 256 $spp $((100 * (2 * $1 + half))) "$work/theirs$half.pfm" |
+    seconds=$(MITSUBA_VARIANT=llvm_ad_rgb python3 experiments/peers/mitsuba_ball.py "$triangles" 256 $spp $((100 * (2 * $1 + half))) "$work/theirs$half.pfm" |
       sed -n 's/^seconds = //p')
   done
   cost theirs "$seconds"

@@ -3,9 +3,9 @@
 
     experiments/peers/mitsuba_ball.py N SIZE SPP SEED OUT.pfm
 
-N triangles at least, as in experiments/scenes/bumpy-ball.toml; needs `pip install mitsuba numpy` and LLVM (Debian's
-libllvm19, named by DRJIT_LIBLLVM_PATH; 15 cannot compile it). MITSUBA_VARIANT=scalar_rgb needs no LLVM and is slower. One
-thread renders, with the integrator `path`. Prints `seconds = ...` of a second rendering, after the first has compiled its
+N triangles at least, as in experiments/scenes/bumpy-ball.toml; needs `pip install mitsuba numpy`. One thread renders, with
+the integrator `path`. MITSUBA_VARIANT=llvm_ad_rgb is faster and needs LLVM (Debian's libllvm19, named by
+DRJIT_LIBLLVM_PATH; 15 cannot compile it). Prints `seconds = ...` of a second rendering, after the first has compiled its
 kernels, and writes that image, of SEED + 1.
 """
 
@@ -18,7 +18,7 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-mi.set_variant(os.environ.get("MITSUBA_VARIANT", "llvm_ad_rgb"))
+mi.set_variant(os.environ.get("MITSUBA_VARIANT", "scalar_rgb"))
 dr.set_thread_count(1)
 
 wanted, size, spp, seed, out = int(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3]), int(sys.argv[4]), sys.argv[5]
