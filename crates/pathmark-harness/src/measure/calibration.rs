@@ -57,6 +57,15 @@ pub struct CalibrationRow {
     pub calibration: u32,
 }
 
+#[cfg(test)]
+impl CalibrationRow {
+    /// A run in which each thread takes so long to start and the jobs take no time.
+    pub(crate) fn of_starts(strategy: &str, threads: usize, start_s: f64) -> Self {
+        let (strategy, seconds) = (strategy.to_string(), start_s * threads as f64);
+        Self { strategy, threads, jobs: 200, seconds, cpu_s: None, started: threads, calibration: 0 }
+    }
+}
+
 #[derive(Default)]
 pub(super) struct Counted(AtomicUsize);
 

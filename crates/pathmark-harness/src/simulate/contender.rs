@@ -185,13 +185,8 @@ mod tests {
     fn a_thread_costs_the_same_whoever_starts_it() {
         let of = |strategy: &str, start_s: f64, pool: bool| {
             [1, 2].map(|threads| CalibrationRow {
-                strategy: strategy.to_owned(),
-                threads,
-                jobs: 200,
-                seconds: start_s * threads as f64,
-                cpu_s: None,
                 started: if pool { 0 } else { threads },
-                calibration: 0,
+                ..CalibrationRow::of_starts(strategy, threads, start_s)
             })
         };
         let rows = [
@@ -211,13 +206,8 @@ mod tests {
     fn each_calibration_has_its_own_costs() {
         let of = |calibration: u32, start_s: f64| {
             [1, 2].map(|threads| CalibrationRow {
-                strategy: "static-blocks".to_owned(),
-                threads,
-                jobs: 200,
-                seconds: start_s * threads as f64,
-                cpu_s: None,
-                started: threads,
                 calibration,
+                ..CalibrationRow::of_starts("static-blocks", threads, start_s)
             })
         };
         let rows = [of(0, 2e-5), of(1, 8.5e-5), of(2, 3e-5)];

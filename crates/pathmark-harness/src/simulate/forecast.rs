@@ -163,13 +163,8 @@ mod tests {
         let starts = [0.01, 0.02, 0.05];
         let rows = starts.iter().enumerate().flat_map(|(calibration, start_s)| {
             [1, 2, 4].map(|threads| CalibrationRow {
-                strategy: "static-blocks".to_owned(),
-                threads,
-                jobs: 200,
-                seconds: start_s * threads as f64,
-                cpu_s: None,
-                started: threads,
                 calibration: calibration as u32,
+                ..CalibrationRow::of_starts("static-blocks", threads, *start_s)
             })
         });
         let known = contenders(&Lab::new(), &rows.collect::<Vec<_>>());
