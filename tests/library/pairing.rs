@@ -74,8 +74,8 @@ const EXCEPTIONS: &[(&str, &str, &[&str])] = &[
         "figures/speedup.rs",
         "a speedup over its number of processors",
         &[
-            "speedup / self.weight_in_use(threads)",
-            "speedup.value / self.weight_in_use(s.key.threads)",
+            "speedup / self.results.weight_in_use(threads)",
+            "speedup.value / self.results.weight_in_use(s.key.threads)",
             "speedup.value / processors",
         ],
     ),
