@@ -10,6 +10,7 @@
 
 use super::external::filled;
 use super::object_pixels::{object_pixels, only};
+use super::pairs::LONG_S;
 use super::process_group;
 use super::processes::run_processes;
 use super::time_limit::timed_out;
@@ -23,7 +24,7 @@ use crate::input::read_text;
 use crate::kernel::DEVICE_NAME;
 use crate::lab::Lab;
 use crate::measure::{
-    Outcome, Record, Rounds, Settings, Setup, TraceFile, Warning, failure, missing_external, run_external,
+    Outcome, Record, Rounds, Settings, Setup, TraceFile, Warning, batch_runs, failure, missing_external, run_external,
 };
 use crate::metric::cross_mse;
 use serde::{Deserialize, Serialize};
@@ -61,9 +62,11 @@ pub struct CellJob {
     pub stays: bool,
 }
 
-/// The first run of a process that stays.
+/// The first row of a process that stays.
 struct Kept {
     setup: Setup,
+    /// The runs of each row.
+    runs: u32,
     first: Record,
 }
 
@@ -73,6 +76,10 @@ pub struct PointJob {
     pub spp: u32,
     /// The path for the image, if it is kept.
     pub image: Option<PathBuf>,
+}
+
+fn without_image(point: &PointJob) -> PointJob {
+    PointJob { image: None, ..point.clone() }
 }
 
 impl CellJob {
@@ -88,7 +95,7 @@ impl CellJob {
 
     /// The same cell without what a sweep keeps of it.
     pub(super) fn alone(&self) -> Self {
-        let points = self.points.iter().map(|point| PointJob { image: None, ..point.clone() }).collect();
+        let points = self.points.iter().map(without_image).collect();
         Self { points, references: None, object: None, trace: None, ..self.clone() }
     }
 
@@ -147,16 +154,21 @@ impl CellJob {
         }
         if let [point] = self.points.as_slice() {
             let setup = self.setup(lab, point.spp)?;
-            if self.stays {
+            let mut outcome = setup.run(None)?;
+            if self.stays && outcome.makespan_s < LONG_S {
                 // The first run of a process is slower than the rest.
-                setup.run(None)?;
+                outcome = setup.run(None)?;
             }
-            let outcome = setup.run(None)?;
             if let Some(path) = &self.trace {
                 TraceFile::new(&setup, &outcome).write(path)?;
             }
             let row = self.row(point, &setup, &outcome, references.as_ref())?;
-            *kept = Some(Kept { setup, first: row.clone() });
+            if !self.stays {
+                return Ok(vec![row]);
+            }
+            let runs = batch_runs(outcome.makespan_s);
+            let row = self.batch(&setup, runs, row)?;
+            *kept = Some(Kept { setup, runs, first: row.clone() });
             return Ok(vec![row]);
         }
         self.curve(lab, references.as_ref())
@@ -165,11 +177,20 @@ impl CellJob {
     /// Runs the cell again: with the setup of the first run, if that kept one. The image is the same, so it is neither
     /// written nor compared again.
     fn run_again(&self, lab: &Lab, kept: &mut Option<Kept>) -> Result<Vec<Record>> {
-        let ([point], Some(Kept { setup, first })) = (self.points.as_slice(), &kept) else {
+        let ([point], Some(Kept { setup, runs, first })) = (self.points.as_slice(), &kept) else {
             return self.run(lab, kept);
         };
-        let point = PointJob { image: None, ..point.clone() };
-        Ok(vec![self.row(&point, setup, &setup.run(None)?, None)?.with_errors_of(first)])
+        let row = self.row(&without_image(point), setup, &setup.run(None)?, None)?;
+        Ok(vec![self.batch(setup, *runs, row)?.with_errors_of(first)])
+    }
+
+    /// The row of a batch of runs, the first of which gave this row.
+    fn batch(&self, setup: &Setup, runs: u32, first: Record) -> Result<Record> {
+        let mut rows = vec![first];
+        for _ in 1..runs {
+            rows.push(Record::new(setup, &setup.run(None)?));
+        }
+        Record::of_batch(&rows).ok_or_else(|| Error::Check("two runs of one setup gave different images".to_string()))
     }
 
     /// The setup with `spp` samples per pixel; refuses a scene that has changed since the experiment began.

@@ -3,7 +3,8 @@
 //! The processes of a group of cells run together, one cell at a time. Two runs that follow each other share the machine's
 //! speed, so drift and most disturbances leave their ratio (L. Bulej et al., "Duet Benchmarking", ICPE 2020). Two cells go
 //! first in alternating order (A B, B A, ...); a larger group runs in a random order, and then in its reverse. A process has
-//! one memory layout, so the pairs are repeated in new processes: [`crate::analysis::adjacent_pairs`].
+//! one memory layout, so the pairs are repeated in new processes: [`crate::analysis::adjacent_pairs`]. Short runs are
+//! repeated within a turn ([`crate::measure::batch_runs`]).
 
 use super::CellJob;
 use super::cell_process::ended;
@@ -17,8 +18,10 @@ use std::time::Duration;
 
 /// Pairs of a process, if the definition sets none.
 pub(super) const USUAL_PAIRS: u32 = 16;
-/// Seconds of a run up to which a process has all of its pairs; longer runs have fewer, and at least two.
+/// Seconds of a run up to which a process has all of its pairs. Longer runs have fewer.
 const SHORT_S: f64 = 0.05;
+/// Seconds of a run from which a process has one pair, and counts its first run: starting it costs little in comparison.
+pub(super) const LONG_S: f64 = 0.5;
 
 /// A cell's process in a group.
 pub(super) struct Contestant {
@@ -89,18 +92,23 @@ pub(super) fn run_pairs(group: &mut [Contestant], pairs: u32, name: &str, proces
     rows
 }
 
-/// The order of a pair: every second one is the reverse of the one before.
+/// The order of a pair: every second one is the reverse of the one before. Processes begin with either in turn, because
+/// one with long runs has only one pair.
 fn order(cells: usize, name: &str, [process, pairs, pair]: [u32; 3]) -> Vec<usize> {
-    let mut order = shuffled(cells, name, process.wrapping_mul(pairs.div_ceil(2)).wrapping_add(pair / 2));
-    let is_reverse = pair % 2 == 1;
-    if is_reverse {
+    let (twice, is_second) = (process / 2, process % 2 == 1);
+    let mut order = shuffled(cells, name, twice.wrapping_mul(pairs.div_ceil(2)).wrapping_add(pair / 2));
+    if (pair % 2 == 1) != is_second {
         order.reverse();
     }
     order
 }
 
-/// The number of pairs for runs of that length: even, so that each order occurs as often as its reverse.
+/// The number of pairs for runs of that length: one if they are long, and otherwise even, so that each order occurs as often
+/// as its reverse.
 pub(super) fn affordable(pairs: u32, longest_s: f64) -> u32 {
+    if longest_s >= LONG_S {
+        return 1;
+    }
     let share = (SHORT_S / longest_s.max(f64::MIN_POSITIVE)).min(1.0);
     let pairs = ((f64::from(pairs) * share) as u32).max(2);
     pairs.next_multiple_of(2)
@@ -112,8 +120,18 @@ mod tests {
 
     #[test]
     fn long_runs_have_fewer_pairs() {
-        assert_eq!([0.0, 0.05, 0.1, 1.0, 60.0].map(|length| affordable(16, length)), [16, 16, 8, 2, 2]);
+        assert_eq!([0.0, 0.05, 0.1, 0.4, 0.5, 60.0].map(|length| affordable(16, length)), [16, 16, 8, 2, 1, 1]);
         assert_eq!(affordable(1, 0.01), 2);
+    }
+
+    /// With one pair for each process, the orders alternate between processes.
+    #[test]
+    fn processes_of_one_pair_alternate() {
+        for process in (0..8).step_by(2) {
+            let [first, mut second] = [process, process + 1].map(|process| order(9, "x", [process, 6, 0]));
+            second.reverse();
+            assert_eq!(first, second, "{process}");
+        }
     }
 
     /// Also with an odd number of pairs, which is rounded up.

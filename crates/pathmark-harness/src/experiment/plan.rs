@@ -5,13 +5,13 @@
 //! speedup and ignores the overhead of schedules.
 
 use super::cell::Cell;
-use super::pairs::affordable;
+use super::pairs::{LONG_S, affordable};
 use super::sweep::Sweep;
 use super::{Keep, Reference};
 use crate::error::Result;
 use crate::kernel::Spec;
 use crate::lab::Lab;
-use crate::measure::{Settings, available_threads};
+use crate::measure::{Settings, available_threads, batch_runs};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -144,12 +144,16 @@ impl Sweep<'_> {
             let repetitions = cell.repetitions(repetitions);
             let run_s =
                 if cell.external.is_none() { cell.weight as f64 * prices.sample_s(&cell.settings)? } else { 0.0 };
-            // A process of pairs runs its cell once before it counts.
-            let (runs, before) =
-                if side_by_side.contains(&index) { (affordable(self.pairs()?, run_s), 1) } else { (1, 0) };
-            plan.rows += cell.points.len() * (repetitions * runs) as usize;
+            // A process of pairs runs its cell once before it counts, unless that takes long.
+            let (rows, runs) = if side_by_side.contains(&index) {
+                let pairs = affordable(self.pairs()?, run_s);
+                (pairs, pairs * batch_runs(run_s) + u32::from(run_s < LONG_S))
+            } else {
+                (1, 1)
+            };
+            plan.rows += cell.points.len() * (repetitions * rows) as usize;
             if cell.external.is_none() {
-                plan.cells_s += (run_s * f64::from(runs + before) + ROW_S) * f64::from(repetitions);
+                plan.cells_s += (run_s * f64::from(runs) + ROW_S) * f64::from(repetitions);
             }
             if definition.keeps(Keep::Traces) && cell.external.is_none() {
                 plan.bytes +=

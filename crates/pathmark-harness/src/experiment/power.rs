@@ -51,10 +51,10 @@ impl Sweep<'_> {
                 let contestant = |index| Contestant::new(job(index).alone(), own.clone(), None);
                 let mut contestants: Vec<Contestant> = group.iter().map(contestant).collect();
                 let before = Instant::now();
-                for (at, Record { pair, makespan_s, .. }) in
+                for (at, Record { pair, makespan_s, runs, .. }) in
                     run_pairs(&mut contestants, PAIRS, &self.definition.name, process)
                 {
-                    seconds += makespan_s.unwrap_or(0.0);
+                    seconds += makespan_s.unwrap_or(0.0) * f64::from(runs.unwrap_or(1));
                     makespan_s.and_then(|time| times.entry(group[at]).or_default().insert((process, pair), time));
                 }
                 drop(contestants);

@@ -11,9 +11,13 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 /// The program that starts processes, unless [`LAUNCHER_VARIABLE`] holds another command, such as
-/// `mpiexec --oversubscribe`.
+/// `mpiexec.mpich`.
 const LAUNCHER: &str = "mpiexec";
 const LAUNCHER_VARIABLE: &str = "PATHMARK_MPIEXEC";
+/// Variables with which Open MPI 4 and 5 start more processes than there are processors: an experiment may ask for that, and
+/// the row then warns. Other libraries ignore them.
+const OVERSUBSCRIBE: [(&str, &str); 2] =
+    [("OMPI_MCA_rmaps_base_oversubscribe", "1"), ("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe")];
 
 /// Runs a cell's job with `ranks` processes. They read it from a file, because a launcher gives its standard input to one
 /// of them. `Ok(None)` if there is no launcher.
@@ -35,6 +39,7 @@ fn printed_by_ranks(ranks: u16, arguments: &[OsString]) -> Result<Option<Vec<u8>
     let own = env::current_exe().map_err(|e| Error::system("finding", "this program", e))?;
     let mut command = Command::new(program);
     command.args(words).arg("-n").arg(ranks.to_string()).arg(own).args(arguments);
+    command.envs(OVERSUBSCRIBE.into_iter().filter(|(name, _)| env::var_os(name).is_none()));
     let output = match command.stdin(Stdio::null()).output() {
         Err(e) if e.kind() == ErrorKind::NotFound => return Ok(None),
         other => other.map_err(|e| Error::system("running", program, e))?,

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 pub(super) const RECORDS: &str = "records.csv";
 
 /// Versions of the columns that can be read. The older ones only lack columns that may be empty.
-const READABLE: [u32; 7] = [7, 8, 9, 10, 11, 12, SCHEMA];
+const READABLE: [u32; 8] = [7, 8, 9, 10, 11, 12, 13, SCHEMA];
 
 /// An open file of records, locked against a second sweep.
 pub struct RecordsFile {

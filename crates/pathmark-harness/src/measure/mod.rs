@@ -6,6 +6,7 @@
 //! [`run_bursts`] on short regions with gaps.
 
 mod adaptive;
+mod batch;
 mod bursts;
 mod calibration;
 mod checkpoint;
@@ -42,6 +43,7 @@ pub use crate::settings::{
     ImageKey, Kind, LARGEST_BYTES, LARGEST_SEED, LARGEST_SPP, SETTINGS, ScheduleKey, Setting, Settings,
     available_threads, image_columns, parse_size, schedule_columns, schedule_name,
 };
+pub use batch::batch_runs;
 pub use bursts::{BurstRow, Bursts, Spin, keeps_threads, run_bursts};
 pub use calibration::{
     CALIBRATIONS, CalibrationRow, calibrate, joined_calibrations, read_calibration, write_calibrations,

@@ -13,7 +13,7 @@ use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 
 /// Version of the columns.
-pub const SCHEMA: u32 = 13;
+pub const SCHEMA: u32 = 14;
 
 settings_list!(columns {
     /// A row. A run that failed is a row too: `error` says why, and columns without a measurement are empty.
@@ -52,6 +52,10 @@ settings_list!(columns {
         /// Place in the pair, from 0: how many of the compared cells ran before this one.
         #[since(12)]
         pub place: Option<u32>,
+        /// Runs that followed each other in this place of the pair. Runs of less than 5 ms are repeated; times and counters
+        /// are then means over them. Empty outside of pairs.
+        #[since(14)]
+        pub runs: Option<u32>,
         /// Position in the order in which the sweep ran.
         pub run_order: u64,
         /// Number of jobs.

@@ -23,7 +23,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// In shorter runs, the start of threads and single interruptions weigh more than the schedule.
-const SHORTEST_S: f64 = 5e-3;
+pub(super) const SHORTEST_S: f64 = 5e-3;
 /// The system counts in hundredths of a second, once for each processor: less than this may be rounding error.
 const FOREIGN_LEAST_S: f64 = 0.03;
 
