@@ -71,6 +71,25 @@ fn compared_cells_run_in_turns() {
     assert!(figure.contains("work-stealing"), "{figure}");
 }
 
+/// A tiny image takes far less than 5 ms, so a row is the mean of several runs; a run outside of pairs is a row.
+#[test]
+fn short_runs_are_repeated_within_a_turn() {
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), &compared("with = { strategy = [\"serial\"] }"));
+    run(folder.path(), &["run", "tiny.toml"], 0);
+    let mut reader = csv::Reader::from_path(folder.path().join("out/tiny/records.csv")).unwrap();
+    let column = |name: &str| COLUMNS.iter().position(|column| column.name == name).unwrap();
+    let rows: Vec<csv::StringRecord> = reader.records().map(|row| row.unwrap()).collect();
+    let of = |is_paired: bool| {
+        let own = rows.iter().filter(move |row| row[column("pair")].is_empty() != is_paired);
+        own.map(|row| row[column("runs")].parse::<u32>().ok()).collect::<Vec<_>>()
+    };
+    assert_eq!(of(false), [None; 6]);
+    let paired = of(true);
+    // A process that is interrupted at its start may think that its runs are long.
+    assert!(paired.len() == 18 && paired.iter().all(Option::is_some) && paired.iter().any(|runs| *runs > Some(1)));
+}
+
 /// A process that lacks a cell's rows runs all of its cells again, in pairs of new numbers: rows of two times make no pair.
 #[test]
 fn a_resumed_process_makes_no_pairs_with_older_rows() {
