@@ -140,3 +140,31 @@ fn strict_asks_for_bounds_that_are_older_than_their_rows() {
     fs::write(cases.join("cases.csv"), format!("{head}\nP20,grid,false,1,1,v,1,2,\n")).unwrap();
     assert!(finish(strict()).with_code(1).err.contains("claims 43 have unexpected verdicts"));
 }
+
+/// Two claims of one's own: a finding, whose number is that of the rows, and a prediction, which is judged.
+#[test]
+fn a_ledger_of_ones_own_is_measured_and_judged() {
+    let folder = with_rows();
+    let finding = "id = 1\nclaim = \"Samples.\"\nexperiment = \"thread-scaling\"\nstatistic = \"value\"\ncolumn = \"spp\"\nlevel = 0.95\n";
+    let predicted = finding.replace("id = 1", "id = 2")
+        + "within = [1000, 2000]\nreason = \"r\"\nquote = \"q\"\nplace = \"p\"\nreported = \"n\"\nexpected = \"refuted\"\nfrozen = \"2000-01-01T00:00:00Z\"\n";
+    let ledger = format!(
+        "report = \"own\"\ntitle = \"My numbers\"\nabout = \"About.\"\n[[claim]]\n{finding}[[claim]]\n{predicted}"
+    );
+    fs::write(folder.path().join("mine.toml"), &ledger).unwrap();
+    let verdicts = listing(folder.path(), &["--ledger", "mine.toml", "--out", "out", "--strict"]);
+    let told = |key: &str| verdicts.iter().map(|row| row[key].as_str().unwrap()).collect::<Vec<_>>();
+    assert_eq!(told("verdict"), ["measured", "refuted"]);
+    assert_eq!(told("measured"), ["4", "4"]);
+    let text = fs::read_to_string(folder.path().join("out/MINE.md")).unwrap();
+    assert!(text.starts_with("# My numbers\n") && text.contains("\n| Samples. | 4 |"), "{text}");
+    let table = fs::read_to_string(folder.path().join("out/claims/mine.csv")).unwrap();
+    assert!(table.contains("\n1,own,measured,"), "{table}");
+    // A file of the same name that is not such a list stays, and so does a wrong ledger's place of the fault.
+    fs::write(folder.path().join("out/MINE.md"), "notes").unwrap();
+    let refused = ["claims", "out", "--ledger", "mine.toml", "--out", "out"];
+    assert!(finish(pathmark(folder.path(), &refused)).with_code(2).err.contains("MINE.md"));
+    fs::write(folder.path().join("mine.toml"), ledger.replace("quote = \"q\"\n", "")).unwrap();
+    let error = finish(pathmark(folder.path(), &["claims", "out", "--ledger", "mine.toml"])).with_code(2).err;
+    assert!(error.contains("mine.toml:12:") && error.contains("`quote`"), "{error}");
+}

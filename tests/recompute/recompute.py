@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Recomputes the verdicts on claims from rows, without a line of the program's own code.
 
-usage: recompute.py CLAIMS.csv FOLDER...
+usage: recompute.py [--ledger FILE] CLAIMS.csv FOLDER...
 
-CLAIMS.csv is what `pathmark claims FOLDER... --out DIR` wrote into DIR/claims/claims.csv. The queries are read from
-experiments/claims/*.toml, the numbers from FOLDER/EXPERIMENT/records.csv. It needs Python 3.11 and nothing else: the
+CLAIMS.csv is what `pathmark claims FOLDER... --out DIR` wrote into DIR/claims/claims.csv, or with a ledger into
+DIR/claims/LEDGER.csv. The queries are read from the ledger, or from experiments/claims/*.toml, and the numbers from
+FOLDER/EXPERIMENT/records.csv. It needs Python 3.11 and nothing else: the
 quantiles of Student's t come from the incomplete beta function, those of the median from binomial sums.
 
 Values and ends of intervals must agree to nine digits, and verdicts must be the same. A difference ends with code 1.
@@ -359,17 +360,22 @@ def judge(claim, folders):
         together = measure(claim, [rows for *_, rows in parts], comparable if best else {}, level)
     if not best and not claim.get("a-fortiori"):
         return "not-comparable", together
+    if not {"within", "at-least", "at-most"} & set(claim):
+        return "measured", together
     told = verdict(together, claim)
     alone = [found for _, found, _ in parts if found.judged]
     return told if all(verdict(found, claim) == told for found in alone) else "open", together
 
 
-def main(listing, *folders):
+def main(*arguments):
+    ledgers = sorted(ROOT.glob("experiments/claims/*.toml"))
+    if arguments[0] == "--ledger":
+        ledgers, arguments = [Path(arguments[1])], arguments[2:]
+    listing, *folders = arguments
     folders = sorted(Path(folder).resolve() for folder in folders)
     with open(listing, newline="") as file:
         told = {row["claim"]: row for row in csv.DictReader(file)}
-    ledgers = [tomllib.loads(path.read_text()) for path in sorted(ROOT.glob("experiments/claims/*.toml"))]
-    claims = [claim for ledger in ledgers for claim in ledger["claim"]]
+    claims = [claim for path in ledgers for claim in tomllib.loads(path.read_text())["claim"]]
     counts, failures = defaultdict(int), []
     for claim in claims:
         row, kind = told[str(claim["id"])], claim.get("statistic", "none")

@@ -1,7 +1,7 @@
 //! `pathmark claims`: the claims of the four reports beside the measurements.
 
 use super::prelude::*;
-use crate::report::claims::{self, Answer, Report, judge};
+use crate::report::claims::{self, Answer, Listing, Report, judge};
 
 /// `pathmark claims out --report A`
 #[derive(Args)]
@@ -15,6 +15,10 @@ pub(crate) struct Arguments {
     /// Print only the claims of this report
     #[arg(long, value_name = "LETTER")]
     report: Option<String>,
+    /// Judge the claims and findings of this file instead of the four reports'. With `--out`, its name is that of the files:
+    /// FINDINGS.md and claims/findings.csv for findings.toml
+    #[arg(long, value_name = "FILE", conflicts_with = "report")]
+    ledger: Option<PathBuf>,
     /// Print an array of objects
     #[arg(long)]
     json: bool,
@@ -43,7 +47,14 @@ struct Row<'a> {
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
-    let mut reports = Report::all()?;
+    let (mut reports, listing) = match &arguments.ledger {
+        None => (Report::all()?, Listing::of_reports()),
+        Some(path) => {
+            let ledger = Report::read(path)?;
+            let listing = Listing::of_ledger(path, &ledger);
+            (vec![ledger], listing)
+        }
+    };
     if let Some(letter) = &arguments.report {
         let known: Vec<String> = reports.iter().map(|report| report.report.clone()).collect();
         reports.retain(|report| report.report == *letter);
@@ -57,13 +68,13 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
         }
     }
     if let Some(out) = &arguments.out {
-        claims::enter("out", out, &mut Files::default())?;
+        listing.enter("out", out, &mut Files::default())?;
     }
     let answers = judge(lab, &reports, &arguments.folders)?;
     if let Some(out) = &arguments.out {
-        claims::check_no_loss("out", &answers, out)?;
+        listing.check_no_loss("out", &answers, out)?;
         create_folder("out", out)?;
-        claims::save(&answers, out)?;
+        listing.save(&answers, out)?;
     }
     if arguments.json {
         print_json(&answers.iter().map(row).collect::<Vec<_>>())?;

@@ -27,7 +27,7 @@
 //!
 //! Optional: `changed`, the reason for a change after the first version, `a-fortiori = true`, if the bound holds under any conditions, and `note`. Instead of a
 //! statistic a claim may have `context` (why there is nothing to measure), `not-comparable` (which condition of the report cannot be met) or `missing` (why
-//! no rows exist yet).
+//! no rows exist yet). A statistic without a prediction is a finding: a number of one's own, which needs neither quote nor reason nor expectation.
 //!
 //! Who changes a query, a prediction or an expectation writes the time into `frozen`: rows that were measured before cannot confirm or refute the claim in
 //! `claims --strict`. A commit cannot contain its own hash, so the time alone is enough.
@@ -37,9 +37,10 @@ use super::statistic::Statistic;
 use super::verdict::{NAMES, Verdict};
 use crate::error::{Error, InputError, Result};
 use crate::experiment;
-use crate::input::{locate, parse};
+use crate::input::{locate, parse, read_text};
 use serde::Deserialize;
 use std::iter::once;
+use std::path::Path;
 
 /// A report and its claims.
 #[derive(Debug, Deserialize)]
@@ -60,18 +61,23 @@ pub struct Report {
 pub struct Claim {
     /// Its number, from 1, unique over all reports.
     pub id: u32,
-    /// The report's words.
+    /// The report's words; like the next fields empty for a finding.
+    #[serde(default)]
     pub quote: String,
     /// Their place in the report.
+    #[serde(default)]
     pub place: String,
     /// The report's numbers.
+    #[serde(default)]
     pub reported: String,
     /// The sentence that is tested.
     pub claim: String,
     /// The expected verdict of a run at the report's own size. Two names with ` or ` between them mean that the value
     /// is so near the limit that noise decides.
+    #[serde(default)]
     pub expected: String,
     /// The time in UTC at which query, prediction and expectation were fixed, and the commit if it is known.
+    #[serde(default)]
     frozen: String,
     /// The reason for a change after the first version; empty if there was none.
     #[serde(default)]
@@ -105,8 +111,8 @@ pub struct Claim {
 #[derive(Debug)]
 pub(super) struct Test {
     pub(super) statistic: Statistic,
-    /// The ends of the prediction; a side without a limit is infinite.
-    pub(super) predicted: [f64; 2],
+    /// The ends of the prediction; a side without a limit is infinite. A finding has none.
+    pub(super) predicted: Option<[f64; 2]>,
     /// Confidence level of the interval.
     pub(super) level: f64,
     pub(super) comparable_if: Conditions,
@@ -131,8 +137,28 @@ impl Claim {
         self.frozen.split(' ').next().unwrap_or_default()
     }
 
+    /// The first field that every claim but a finding needs, and that this one lacks.
+    fn missing_field(&self) -> Option<&'static str> {
+        let needed = [
+            ("quote", &self.quote),
+            ("place", &self.place),
+            ("reported", &self.reported),
+            ("expected", &self.expected),
+            ("frozen", &self.frozen),
+        ];
+        needed.into_iter().find(|(_, value)| value.is_empty()).map(|(name, _)| name)
+    }
+
+    fn predicts(&self) -> bool {
+        self.within.is_some() || self.at_least.is_some() || self.at_most.is_some()
+    }
+
     fn resolve(&mut self) -> Result<()> {
-        if !is_time(self.frozen_utc()) {
+        let is_finding = self.statistic.is_some() && !self.predicts() && self.frozen.is_empty();
+        if let Some(field) = self.missing_field().filter(|_| !is_finding) {
+            return Err(InputError::new("id", self.id.to_string(), format!("has no `{field}`")).into());
+        }
+        if !is_finding && !is_time(self.frozen_utc()) {
             return Err(InputError::new("frozen", &self.frozen, "does not begin with a time")
                 .allowed("a time in UTC and perhaps a commit, for example 2026-01-31T12:00:00Z 0123abcd")
                 .into());
@@ -144,7 +170,7 @@ impl Claim {
                 .allowed("a statistic, a context, a not-comparable or a missing")
                 .into());
         }
-        if !self.expected_verdicts().all(|name| NAMES.contains(&name)) {
+        if !is_finding && !self.expected_verdicts().all(|name| NAMES.contains(&name)) {
             let problem = "is neither the name of a verdict nor names with ` or ` between them";
             return Err(InputError::new("expected", &self.expected, problem).allowed(NAMES.join(", ")).into());
         }
@@ -155,17 +181,20 @@ impl Claim {
         };
         let statistic = Statistic::of(name, &self.fields)?;
         let predicted = match (self.within, self.at_least, self.at_most) {
-            (Some([low, high]), None, None) if low <= high => [low, high],
-            (None, Some(low), None) => [low, f64::INFINITY],
-            (None, None, Some(high)) => [f64::NEG_INFINITY, high],
+            (Some([low, high]), None, None) if low <= high => Some([low, high]),
+            (None, Some(low), None) => Some([low, f64::INFINITY]),
+            (None, None, Some(high)) => Some([f64::NEG_INFINITY, high]),
+            (None, None, None) if is_finding => None,
             _ => {
                 return Err(InputError::new("id", self.id.to_string(), "has not exactly one prediction")
-                    .allowed("within = [low, high], at-least = low or at-most = high")
+                    .allowed(
+                        "within = [low, high], at-least = low or at-most = high; a finding has none, and no `frozen`",
+                    )
                     .into());
             }
         };
         let Some(level) = self.level else {
-            let problem = "has a prediction, and no level for the interval that is compared with it";
+            let problem = "has a statistic, and no level for its interval";
             return Err(InputError::new("id", self.id.to_string(), problem).allowed("level = 0.95").into());
         };
         if !(level > 0.0 && level < 1.0) {
@@ -173,7 +202,7 @@ impl Claim {
                 .allowed("between 0 and 1")
                 .into());
         }
-        if self.reason.is_empty() && !matches!(statistic, Statistic::Case(_)) {
+        if self.reason.is_empty() && !is_finding && !matches!(statistic, Statistic::Case(_)) {
             let problem = "has a prediction, and no reason for its ends";
             return Err(InputError::new("id", self.id.to_string(), problem).allowed("reason = \"...\"").into());
         }
@@ -198,6 +227,11 @@ impl Report {
             })?;
         }
         Ok(report)
+    }
+
+    /// Reads a ledger of somebody's own.
+    pub fn read(path: &Path) -> Result<Self> {
+        Self::from_text(&path.display().to_string(), &read_text(path)?)
     }
 
     /// The four reports, with their claims.

@@ -58,7 +58,7 @@ impl Answer<'_> {
     }
 
     fn is_judged(&self) -> bool {
-        !matches!(self.verdict, Verdict::NotAnswered | Verdict::NotComparable)
+        !matches!(self.verdict, Verdict::NotAnswered | Verdict::NotComparable | Verdict::Measured)
     }
 }
 
@@ -141,16 +141,23 @@ fn verdict_of<'a>(parts: &[Part<'_>], blank: Answer<'a>, test: &Test) -> Result<
             differences.push(difference);
         }
     }
-    let alone = |part: &Part<'_>| part.alone.stands_alone().then(|| Verdict::of(&part.alone, test.predicted));
+    let sources = parts.iter().map(|part| part.source.clone()).collect();
+    let why = differences.join("; ");
+    let Some(predicted) = test.predicted else {
+        let is_comparable = differences.is_empty();
+        let verdict = if is_comparable { Verdict::Measured } else { Verdict::NotComparable };
+        return Ok(Answer { verdict, why, sources, found: Some(found), ..blank });
+    };
+    let alone = |part: &Part<'_>| part.alone.stands_alone().then(|| Verdict::of(&part.alone, predicted));
     let runs: Vec<Option<Verdict>> = parts.iter().map(alone).collect();
-    let all = Verdict::of(&found, test.predicted);
+    let all = Verdict::of(&found, predicted);
     let agree = runs.iter().flatten().all(|run| *run == all);
     let verdict = match all {
         _ if !differences.is_empty() && !test.a_fortiori => Verdict::NotComparable,
         all if agree => all,
         _ => Verdict::Open,
     };
-    let needed = |found: &Measurement| found.units_to_settle(test.predicted, test.level);
+    let needed = |found: &Measurement| found.units_to_settle(predicted, test.level);
     let of_runs = || parts.iter().filter(|part| alone(part) == Some(Verdict::Open));
     let to_settle = match verdict {
         Verdict::Open if agree => needed(&found),
@@ -165,8 +172,7 @@ fn verdict_of<'a>(parts: &[Part<'_>], blank: Answer<'a>, test: &Test) -> Result<
         Some(first) if first.as_str() < blank.claim.frozen_utc() => Age::RowsFirst,
         Some(_) => Age::BoundFirst,
     };
-    let sources = parts.iter().map(|part| part.source.clone()).collect();
-    Ok(Answer { verdict, why: differences.join("; "), sources, found: Some(found), runs, to_settle, age, ..blank })
+    Ok(Answer { verdict, why, sources, found: Some(found), runs, to_settle, age, ..blank })
 }
 
 /// The question of a test to rows: to those at the report's own size, or to all.

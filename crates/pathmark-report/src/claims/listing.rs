@@ -18,7 +18,6 @@ use std::path::{Component, Path, PathBuf};
 
 /// Name of the verdicts' folder within the results.
 pub const FOLDER: &str = "claims";
-const CSV: &str = "claims.csv";
 /// The verdicts as a text. It is beside the folders of the rows, so that its links work.
 pub const MARKDOWN: &str = "CLAIMS.md";
 
@@ -40,7 +39,7 @@ impl Answer<'_> {
         let of = |verdict: Verdict| self.runs.iter().filter(|run| **run == Some(verdict)).count();
         let (all, judged) = (self.runs.len(), self.runs.iter().flatten().count());
         match self.verdict {
-            Verdict::NotComparable | Verdict::NotAnswered | Verdict::Context => String::new(),
+            Verdict::NotComparable | Verdict::NotAnswered | Verdict::Context | Verdict::Measured => String::new(),
             _ if judged == 0 => format!("over {}, none long enough alone", counted(all, "run")),
             verdict if of(verdict) == judged => {
                 let short = all - judged;
@@ -66,7 +65,7 @@ impl Answer<'_> {
     /// Whether the claim was fixed before its rows were measured.
     pub fn age(&self) -> &'static str {
         match self.age {
-            _ if self.found.is_none() => "",
+            _ if self.found.is_none() || self.verdict == Verdict::Measured => "",
             Age::BoundFirst => "bound older than its rows",
             Age::RowsFirst => "bound younger than its rows",
             Age::Unknown => "rows without a time",
@@ -75,9 +74,9 @@ impl Answer<'_> {
 
     /// The values that the report predicts.
     pub fn predicted(&self) -> String {
-        let Ok(test) = self.claim.test() else { return "-".to_string() };
+        let Some(predicted) = self.claim.test().ok().and_then(|test| test.predicted) else { return "-".to_string() };
         let short = |value: f64| number::short(value, 6);
-        match test.predicted {
+        match predicted {
             [low, high] if low == high => short(low),
             [low, f64::INFINITY] => format!("at least {}", short(low)),
             [f64::NEG_INFINITY, high] => format!("at most {}", short(high)),
@@ -101,38 +100,66 @@ impl Answer<'_> {
     }
 }
 
-/// Enters the files of the verdicts into the files of a command that will write them; a new file may replace an old one.
-pub fn enter(option: &str, out: &Path, files: &mut Files) -> Result<()> {
-    files.renews(option, &out.join(FOLDER).join(CSV), |path| starts_with(path, "claim,report,verdict,"))?;
-    files.renews(option, &out.join(MARKDOWN), is_markdown)
+/// The files of verdicts: `CLAIMS.md` and `claims/claims.csv` for the four reports, and others for a ledger.
+pub struct Listing {
+    stem: String,
+    heading: String,
 }
 
-/// Writes `claims/claims.csv` and `CLAIMS.md` into a folder of results.
-pub fn save(answers: &[Answer<'_>], out: &Path) -> Result<()> {
-    let folder = out.join(FOLDER);
-    std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
-    table("claims", answers).save(&folder)?;
-    let text = markdown(answers, out);
-    atomic_file::write(&out.join(MARKDOWN), |file| file.write_all(text.as_bytes()))
-}
-
-/// Refuses to write verdicts into a folder whose files answer claims that these leave open to another run.
-pub fn check_no_loss(option: &str, answers: &[Answer<'_>], out: &Path) -> Result<()> {
-    for (path, read) in [(out.join(FOLDER).join(CSV), in_table as fn(&Path) -> Kept), (out.join(MARKDOWN), in_text)] {
-        let kept = read(&path);
-        // A claim that asks for no rows any more loses none.
-        let is_lost = |answer: &&Answer<'_>| {
-            let says_more = kept.get(&answer.claim.id).is_some_and(|kept| kept.says() > answer.verdict.says());
-            says_more && answer.claim.test().is_ok()
-        };
-        let lost: Vec<String> = answers.iter().filter(is_lost).map(|answer| answer.claim.id.to_string()).collect();
-        if !lost.is_empty() {
-            let problem = format!("answers claims that these rows do not answer: {}", lost.join(", "));
-            let error = InputError::new(option, path.display().to_string(), problem);
-            return Err(error.allowed("another folder, or more folders of rows").into());
-        }
+impl Listing {
+    pub fn of_reports() -> Self {
+        Self { stem: FOLDER.to_string(), heading: HEADING.to_string() }
     }
-    Ok(())
+
+    /// Files with the name of the ledger: `FINDINGS.md` and `claims/findings.csv` for `findings.toml`.
+    pub fn of_ledger(file: &Path, ledger: &Report) -> Self {
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
+        Self { stem, heading: format!("# {}", ledger.title) }
+    }
+
+    fn csv(&self, out: &Path) -> PathBuf {
+        out.join(FOLDER).join(format!("{}.csv", self.stem))
+    }
+
+    fn markdown(&self, out: &Path) -> PathBuf {
+        out.join(format!("{}.md", self.stem.to_uppercase()))
+    }
+
+    /// Enters the files into those of a command that will write them; a new file may replace an old one.
+    pub fn enter(&self, option: &str, out: &Path, files: &mut Files) -> Result<()> {
+        files.renews(option, &self.csv(out), |path| starts_with(path, "claim,report,verdict,"))?;
+        files.renews(option, &self.markdown(out), |path| starts_with(path, &self.heading))
+    }
+
+    /// Writes the files into a folder of results.
+    pub fn save(&self, answers: &[Answer<'_>], out: &Path) -> Result<()> {
+        let folder = out.join(FOLDER);
+        std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
+        if let Block::Table { table, .. } = table("claims", answers) {
+            table.save(&self.csv(out))?;
+        }
+        let text = markdown(&self.heading, answers, out);
+        atomic_file::write(&self.markdown(out), |file| file.write_all(text.as_bytes()))
+    }
+
+    /// Refuses to write verdicts into a folder whose files answer claims that these leave open to another run.
+    pub fn check_no_loss(&self, option: &str, answers: &[Answer<'_>], out: &Path) -> Result<()> {
+        for (path, read) in [(self.csv(out), in_table as fn(&Path) -> Kept), (self.markdown(out), in_text)] {
+            let kept = read(&path);
+            // A claim that asks for no rows any more loses none.
+            let is_lost = |answer: &&Answer<'_>| {
+                let says_more = kept.get(&answer.claim.id).is_some_and(|kept| kept.says() > answer.verdict.says());
+                says_more && answer.claim.test().is_ok()
+            };
+            let lost: Vec<String> = answers.iter().filter(is_lost).map(|answer| answer.claim.id.to_string()).collect();
+            if !lost.is_empty() {
+                let problem = format!("answers claims that these rows do not answer: {}", lost.join(", "));
+                let error = InputError::new(option, path.display().to_string(), problem);
+                return Err(error.allowed("another folder, or more folders of rows").into());
+            }
+        }
+        Ok(())
+    }
 }
 
 /// The verdict on each claim.
@@ -202,6 +229,11 @@ fn starts_with(path: &Path, text: &str) -> bool {
     File::open(path).and_then(|mut file| file.read_exact(&mut head)).is_ok() && head == text.as_bytes()
 }
 
+/// The verdicts on claims with a prediction.
+fn judged() -> impl Iterator<Item = &'static str> {
+    NAMES.into_iter().filter(|name| *name != Verdict::Measured.name())
+}
+
 /// The number of claims of each report with each verdict.
 fn counts(answers: &[Answer<'_>]) -> Vec<(String, Vec<usize>)> {
     let mut reports: Vec<&str> = answers.iter().map(|answer| answer.report.report.as_str()).collect();
@@ -210,7 +242,7 @@ fn counts(answers: &[Answer<'_>]) -> Vec<(String, Vec<usize>)> {
     let of = |report: &str, name: &str| {
         answers.iter().filter(|a| a.report.report == report && a.verdict.name() == name).count()
     };
-    reports.iter().map(|report| ((*report).to_string(), NAMES.map(|name| of(report, name)).to_vec())).collect()
+    reports.iter().map(|report| ((*report).to_string(), judged().map(|name| of(report, name)).collect())).collect()
 }
 
 /// The path of a file as seen from a folder; the path itself if either is not there.
@@ -221,21 +253,27 @@ fn seen_from(folder: &Path, file: &Path) -> PathBuf {
     up.chain(to.components().skip(shared)).collect()
 }
 
-/// The verdicts as a text; paths of sources are relative to `base`.
-fn markdown(answers: &[Answer<'_>], base: &Path) -> String {
-    let mut text = format!(
-        "{HEADING}\n\n`pathmark claims` computed every verdict from the rows that it links to. A claim is *confirmed* if the whole interval lies within the values \
-         that the report predicts, *refuted* if it lies wholly outside, and *open* otherwise. Each folder is a run; a claim whose runs differ is open. It is *not comparable* if the rows \
-         were measured under other conditions, and *not answered* if there are no rows.\n\n",
-    );
-    let _ = writeln!(text, "| report | {} |", NAMES.map(|name| name.replace('-', " ")).join(" | "));
-    let _ = writeln!(text, "|--|{}", "--:|".repeat(NAMES.len()));
-    for (report, counts) in counts(answers) {
-        let counts: Vec<String> = counts.iter().map(ToString::to_string).collect();
-        let _ = writeln!(text, "| {report} | {} |", counts.join(" | "));
+/// The verdicts as a text; paths of sources are relative to `base`. Findings are a table.
+fn markdown(heading: &str, answers: &[Answer<'_>], base: &Path) -> String {
+    let is_finding = |answer: &&Answer<'_>| answer.claim.test().is_ok_and(|test| test.predicted.is_none());
+    let (findings, claims): (Vec<&Answer<'_>>, Vec<&Answer<'_>>) = answers.iter().partition(is_finding);
+    let mut text = format!("{heading}\n");
+    if !claims.is_empty() {
+        text.push_str(
+            "\n`pathmark claims` computed every verdict from the rows that it links to. A claim is *confirmed* if the whole interval lies within the values \
+             that the report predicts, *refuted* if it lies wholly outside, and *open* otherwise. Each folder is a run; a claim whose runs differ is open. It is *not comparable* if the rows \
+             were measured under other conditions, and *not answered* if there are no rows.\n\n",
+        );
+        let names: Vec<String> = judged().map(|name| name.replace('-', " ")).collect();
+        let _ = writeln!(text, "| report | {} |", names.join(" | "));
+        let _ = writeln!(text, "|--|{}", "--:|".repeat(names.len()));
+        for (report, counts) in counts(answers) {
+            let counts: Vec<String> = counts.iter().map(ToString::to_string).collect();
+            let _ = writeln!(text, "| {report} | {} |", counts.join(" | "));
+        }
     }
     let mut last: Option<&Report> = None;
-    let mut ordered: Vec<&Answer<'_>> = answers.iter().collect();
+    let mut ordered = claims;
     ordered.sort_by_key(|answer| (&answer.report.report, answer.claim.id));
     for answer in ordered {
         if last.is_none_or(|last| last.report != answer.report.report) {
@@ -245,7 +283,27 @@ fn markdown(answers: &[Answer<'_>], base: &Path) -> String {
         }
         text.push_str(&entry(answer, base));
     }
+    if let Some(first) = findings.first() {
+        let _ = write!(
+            text,
+            "\n{}\n\n| finding | measured | interval | rows |\n|--|--|--|--|\n",
+            first.report.about.trim()
+        );
+        for answer in findings {
+            let numbers = match &answer.found {
+                Some(found) => format!("{} | {}; {}", found.shown(), found.confidence(), found.rule_in_words()),
+                None => format!("- | {}", answer.why),
+            };
+            let _ = writeln!(text, "| {} | {numbers} | {} |", answer.claim.claim, links(answer, base));
+        }
+    }
     text
+}
+
+/// Links to the files of an answer's rows.
+fn links(answer: &Answer<'_>, base: &Path) -> String {
+    let shown = answer.sources.iter().map(|source| seen_from(base, source).display().to_string());
+    shown.map(|shown| format!("[{shown}]({shown})")).collect::<Vec<_>>().join(", ")
 }
 
 fn entry(answer: &Answer<'_>, base: &Path) -> String {
@@ -259,12 +317,11 @@ fn entry(answer: &Answer<'_>, base: &Path) -> String {
     }
     let _ = write!(text, "\n\n> {} ({})\n\n- Reported: {}\n", claim.quote, claim.place, claim.reported);
     if let Some(found) = &answer.found {
-        let shown = answer.sources.iter().map(|source| seen_from(base, source).display().to_string());
-        let links: Vec<String> = shown.map(|shown| format!("[{shown}]({shown})")).collect();
+        let links = links(answer, base);
         let level = Some(found.confidence()).filter(|level| !level.is_empty());
         let level = level.map_or_else(String::new, |level| format!(", {level}"));
         let (measured, rule, question) = (found.shown(), found.rule_in_words(), answer.question());
-        let _ = writeln!(text, "- Measured: {measured}{level}; {question}; {rule}; {}", links.join(", "));
+        let _ = writeln!(text, "- Measured: {measured}{level}; {question}; {rule}; {links}");
         let reason = Some(claim.reason.trim()).filter(|reason| !reason.is_empty());
         let reason = reason.map_or_else(String::new, |reason| format!(". {reason}"));
         let _ = writeln!(text, "- Predicted: {}{reason}", answer.predicted());
@@ -300,7 +357,7 @@ pub fn totals(answers: &[Answer<'_>]) -> String {
 
 /// The verdicts for the page: counts, and a table for each report.
 pub(crate) fn blocks(answers: &[Answer<'_>]) -> Vec<Block> {
-    let heads: Vec<String> = std::iter::once("report").chain(NAMES).map(|name| name.replace('-', " ")).collect();
+    let heads: Vec<String> = std::iter::once("report").chain(judged()).map(|name| name.replace('-', " ")).collect();
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     let rows = counts(answers).into_iter().map(|(report, counts)| {
         std::iter::once(report).chain(counts.iter().map(ToString::to_string)).collect::<Vec<String>>()

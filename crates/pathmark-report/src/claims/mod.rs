@@ -16,7 +16,7 @@ mod verdict;
 
 pub use definition::{Claim, Report};
 pub use judge::{Answer, judge};
-pub use listing::{FOLDER, MARKDOWN, check_no_loss, enter, is_markdown, save, totals};
+pub use listing::{FOLDER, Listing, MARKDOWN, is_markdown, totals};
 pub use verdict::Verdict;
 
 use super::page::Section;

@@ -3,7 +3,9 @@
 use super::measurement::Measurement;
 use std::fmt;
 
-pub(super) const NAMES: [&str; 6] = ["confirmed", "refuted", "open", "not-comparable", "not-answered", "context"];
+/// The verdicts on claims with a prediction, and then that of findings, which have none.
+pub(super) const NAMES: [&str; 7] =
+    ["confirmed", "refuted", "open", "not-comparable", "not-answered", "context", "measured"];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
@@ -19,6 +21,8 @@ pub enum Verdict {
     NotAnswered,
     /// There is nothing to measure.
     Context,
+    /// A finding, which predicts nothing.
+    Measured,
 }
 
 impl Verdict {
@@ -27,8 +31,9 @@ impl Verdict {
     }
 
     pub(super) fn named(name: &str) -> Option<Self> {
-        let all = [Self::Confirmed, Self::Refuted, Self::Open, Self::NotComparable, Self::NotAnswered, Self::Context];
-        all.into_iter().find(|verdict| verdict.name() == name)
+        let judged = [Self::Confirmed, Self::Refuted, Self::Open, Self::NotComparable, Self::NotAnswered];
+        let mut all = judged.into_iter().chain([Self::Context, Self::Measured]);
+        all.find(|verdict| verdict.name() == name)
     }
 
     /// How much it says about the claim: of two answers, the larger one counts.
@@ -36,7 +41,7 @@ impl Verdict {
         match self {
             Self::NotAnswered | Self::Context => 0,
             Self::NotComparable => 1,
-            Self::Confirmed | Self::Refuted | Self::Open => 2,
+            Self::Confirmed | Self::Refuted | Self::Open | Self::Measured => 2,
         }
     }
 
@@ -70,6 +75,7 @@ mod tests {
     fn names_are_in_the_order_of_the_verdicts() {
         assert_eq!(Verdict::Confirmed.name(), "confirmed");
         assert_eq!(Verdict::Context.name(), "context");
+        assert_eq!(Verdict::named("measured"), Some(Verdict::Measured));
         assert_eq!(Verdict::NotAnswered.to_string(), "not answered");
     }
 
