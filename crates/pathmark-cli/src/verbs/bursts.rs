@@ -126,7 +126,7 @@ fn measure(
     strategies: &[String],
     console: &Console,
 ) -> Result<Vec<BurstRow>> {
-    console.begin("processes", u64::from(arguments.processes));
+    console.begin("bursts", u64::from(arguments.processes));
     let mut rows = Vec::new();
     for process in 0..arguments.processes {
         rows.extend(in_process(arguments, threads, strategies, process)?);
