@@ -89,6 +89,7 @@ fn files_of_others_in_a_folder_of_results_are_kept() {
         ("out/report.html", &["reproduce", "--out", "out"]),
         ("out/doctor.json", &["reproduce", "--out", "out"]),
         ("out/guards/machine.toml", &["reproduce", "--out", "out", "--resume"]),
+        ("out/bursts/machine.toml", &["reproduce", "--out", "out", "--resume", "--reports"]),
         ("out/report.html", check),
         ("out/guards/guards.csv", check),
         ("out/guards/machine.toml", check),

@@ -12,7 +12,7 @@ use pathmark::measure::{Checkpoint, Position, Record, Rounds, Settings, Setup, T
 use pathmark::scene::{self, SCENES};
 use sha2::{Digest, Sha256};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A kind of file and its reader.
 pub(crate) struct Target {
@@ -124,6 +124,16 @@ pub(crate) const TARGETS: &[Target] = &[
         prepare: beside_the_records,
         read: report,
         more: rows,
+        words: CSV_WORDS,
+        cut: false,
+        mutations: 300,
+        ..TARGET
+    },
+    Target {
+        name: "bursts",
+        file: "out/bursts/bursts.csv",
+        prepare: beside_the_bursts,
+        read: report,
         words: CSV_WORDS,
         cut: false,
         mutations: 300,
@@ -365,11 +375,23 @@ fn image(path: &Path) -> bool {
 }
 
 fn beside_the_records(folder: &Path) {
-    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/corpus");
-    let to = folder.join("out/tiny");
+    let to = with_a_machine(folder, "out/tiny");
+    fs::copy(corpus("experiment/tiny.toml"), to.join("experiment.toml")).unwrap();
+}
+
+fn beside_the_bursts(folder: &Path) {
+    with_a_machine(folder, "out/bursts");
+}
+
+fn with_a_machine(folder: &Path, name: &str) -> PathBuf {
+    let to = folder.join(name);
     fs::create_dir_all(&to).unwrap();
-    fs::copy(corpus.join("experiment/tiny.toml"), to.join("experiment.toml")).unwrap();
-    fs::copy(corpus.join("machine/machine.toml"), to.join("machine.toml")).unwrap();
+    fs::copy(corpus("machine/machine.toml"), to.join("machine.toml")).unwrap();
+    to
+}
+
+fn corpus(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/corpus").join(file)
 }
 
 /// Draws the whole page from rows that may have been edited.

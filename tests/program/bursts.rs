@@ -42,6 +42,20 @@ fn pools_take_turns_in_every_process() {
     assert!(table.out.contains("beyond the noise") && table.err.contains("3 processes"), "{}", table.err);
 }
 
+/// `reproduce` writes the same two files into the same folder.
+#[test]
+fn the_page_of_a_folder_shows_its_bursts() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = ["--strategy", "fixed-pool,rayon", "--gap", "1us", "--rounds", "1", "--processes", "2"];
+    finish(pathmark(folder.path(), &[&SMALL[..], &own, &["--out", "out/bursts"]].concat())).with_code(0);
+    finish(pathmark(folder.path(), &["report", "out"])).with_code(0);
+    let page = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    for part in ["Does spinning pay?", "id=\"bursts-wakes\"", "fewer than 3 processes", "data-of=\"fixed-pool\""] {
+        assert!(page.contains(part), "{part}");
+    }
+    assert!(folder.path().join("out/bursts/figures/wakes.png").is_file());
+}
+
 #[test]
 fn wrong_input_is_refused_before_any_turn() {
     let folder = tempfile::tempdir().unwrap();

@@ -12,9 +12,9 @@ pub const LEVEL: f64 = 0.95;
 
 /// A value and its interval, if there were enough values for one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(super) struct Estimated {
-    pub(super) value: f64,
-    pub(super) interval: Option<Interval>,
+pub struct Estimated {
+    pub value: f64,
+    pub interval: Option<Interval>,
     /// The number of values that it was computed from, if counted.
     pub(super) count: Option<usize>,
     /// Whether it lacks repetitions that the values beside it have.

@@ -1,5 +1,6 @@
 //! The report: turns records into figures, tables, findings and one self-contained page.
 
+pub mod bursts;
 pub mod claims;
 mod contenders;
 mod estimated;
@@ -25,7 +26,7 @@ mod trace_tests;
 pub mod why;
 mod words;
 
-pub use estimated::LEVEL;
+pub use estimated::{Estimated, LEVEL};
 pub use figures::{FIGURES, FigureEntry, check_figures, figure_of_serial};
 pub use page::benches::{BenchRow, write_benches};
 pub use page::block::Block;
@@ -67,7 +68,7 @@ pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
         let blocks = figures::blocks(&results)?;
         add(&folder, Section::of(results, blocks))?;
     }
-    for section in [guards::section(out)?, benches::section(out)?].into_iter().flatten() {
+    for section in [guards::section(out)?, page::bursts::section(out)?, benches::section(out)?].into_iter().flatten() {
         add(&out.join(&section.name), section)?;
     }
     if !sections.is_empty() {

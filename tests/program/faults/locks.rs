@@ -133,6 +133,12 @@ fn reproduce_shares_its_folder_with_nobody() {
     assert!(out.join("tiny/records.csv").exists() && !out.join("earlier").exists());
     drop(other);
     assert_eq!(lock_files(&out), 0);
+    // Bursts of an earlier run are kept.
+    fs::create_dir(out.join("bursts")).unwrap();
+    fs::write(out.join("bursts/bursts.csv"), "rows").unwrap();
+    end(running(folder.path(), &reproduce, "out/bursts", |path| !path.exists()));
+    let earlier = fs::read_dir(out.join("earlier")).unwrap().next().unwrap().unwrap().path();
+    assert_eq!(fs::read(earlier.join("bursts/bursts.csv")).unwrap(), b"rows");
 }
 
 #[test]

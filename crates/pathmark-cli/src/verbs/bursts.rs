@@ -4,29 +4,23 @@
 //! follows from several processes, each of which is this program started again.
 
 use super::prelude::*;
-use crate::analysis::adjacent_pairs::{by_process, paired_ratio};
-use crate::analysis::quantile::median;
-use crate::analysis::{Estimate, Interval};
-use crate::experiment::{MACHINE, RunFile, read_run_file};
+use super::selftest::write_machine;
+use crate::experiment::{MACHINE, read_run_file};
 use crate::measure::{BurstRow, Bursts, Spin, available_threads, keeps_threads, run_bursts};
-use clap::value_parser;
+use crate::report::Estimated;
+use crate::report::bursts::{FILE, FOLDER, Line, in_words, lines, usual_yardstick, verdict};
+use clap::{Parser, value_parser};
 use std::num::NonZeroUsize;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// Confidence of the intervals.
-const LEVEL: f64 = 0.95;
-/// The file of the rows.
-const FILE: &str = "bursts.csv";
-/// The strategy that the others are compared with, if it takes part.
-const USUAL_YARDSTICK: &str = "rayon";
 /// A strategy whose threads start in each region, beside the pools.
 const WITHOUT_POOL: &str = "shared-counter";
 /// The longest job and gap.
 const LONGEST: Duration = Duration::from_secs(1);
 
 /// `pathmark bursts --gap 20us,2ms --strategy rayon,fixed-pool`
-#[derive(Args)]
+#[derive(Parser)]
 pub(crate) struct Arguments {
     /// Strategies of `pathmark list strategies` [default: all that keep their threads, and shared-counter, which starts them
     /// in each region]
@@ -56,7 +50,7 @@ pub(crate) struct Arguments {
     /// Processes; intervals need 3
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = value_parser!(u32).range(1..=10_000))]
     processes: u32,
-    /// Folder for the rows of all turns and the machine
+    /// Folder for the rows of all turns and the machine. `pathmark report DIR` shows those in DIR/bursts
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print an array of JSON objects
@@ -73,8 +67,7 @@ fn length(text: &str) -> std::result::Result<Duration, String> {
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
-    let threads = arguments.threads.map_or_else(available_threads, usize::from);
-    let threads = NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN);
+    let threads = threads(arguments);
     let strategies = strategies(arguments, lab, threads)?;
     if let Some(process) = arguments.process {
         return print_json(&turns(arguments, lab, threads, &strategies, process)?);
@@ -82,23 +75,13 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     let yardstick = yardstick(arguments, &strategies)?;
     if let Some(out) = &arguments.out {
         create_folder("out", out)?;
-        let mut files = Files::default();
-        files.renews("out", &out.join(FILE), |_| false)?;
-        files.renews("out", &out.join(MACHINE), |path| read_run_file(path).is_ok())?;
+        claim(out, &mut Files::default())?;
     }
-    console.begin("processes", u64::from(arguments.processes));
-    let mut rows = Vec::new();
-    for process in 0..arguments.processes {
-        rows.extend(in_process(arguments, threads, &strategies, process)?);
-        console.advance(u64::from(process) + 1);
-    }
-    console.end();
+    let rows = measure(arguments, threads, &strategies, console)?;
     if let Some(out) = &arguments.out {
-        let program = lab.program().join(" ");
-        RunFile { program, ..RunFile::of_now(crate::command_line()) }.write(&out.join(MACHINE))?;
-        crate::csv_file::write(&out.join(FILE), &rows)?;
+        write(out, lab, &rows)?;
     }
-    let lines = lines(arguments, &rows, &strategies, yardstick);
+    let lines = lines(&rows, yardstick)?;
     if arguments.json {
         return print_json(&lines);
     }
@@ -109,6 +92,48 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
         console.note("intervals need 3 processes (--processes 3)");
     }
     Ok(())
+}
+
+/// Measures as `pathmark bursts --out OUT/bursts` does.
+pub(super) fn measure_into(out: &Path, lab: &Lab, console: &Console) -> Result<()> {
+    let defaults = Arguments::parse_from(["bursts"]);
+    let threads = threads(&defaults);
+    let rows = measure(&defaults, threads, &strategies(&defaults, lab, threads)?, console)?;
+    write(&out.join(FOLDER), lab, &rows)
+}
+
+/// Adds the rows and the machine to the files that a command will write. Refuses a folder that has rows: measurements are
+/// never overwritten.
+pub(super) fn claim(folder: &Path, files: &mut Files) -> Result<()> {
+    files.renews("out", &folder.join(FILE), |_| false)?;
+    files.renews("out", &folder.join(MACHINE), |path| read_run_file(path).is_ok())
+}
+
+fn write(folder: &Path, lab: &Lab, rows: &[BurstRow]) -> Result<()> {
+    write_machine(folder, lab)?;
+    crate::csv_file::write(&folder.join(FILE), rows)
+}
+
+fn threads(arguments: &Arguments) -> NonZeroUsize {
+    let threads = arguments.threads.map_or_else(available_threads, usize::from);
+    NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN)
+}
+
+/// The rows of all processes.
+fn measure(
+    arguments: &Arguments,
+    threads: NonZeroUsize,
+    strategies: &[String],
+    console: &Console,
+) -> Result<Vec<BurstRow>> {
+    console.begin("bursts", u64::from(arguments.processes));
+    let mut rows = Vec::new();
+    for process in 0..arguments.processes {
+        rows.extend(in_process(arguments, threads, strategies, process)?);
+        console.advance(u64::from(process) + 1);
+    }
+    console.end();
+    Ok(rows)
 }
 
 /// The strategies that take part, each once.
@@ -131,11 +156,12 @@ fn strategies(arguments: &Arguments, lab: &Lab, threads: NonZeroUsize) -> Result
 }
 
 fn yardstick<'a>(arguments: &'a Arguments, strategies: &'a [String]) -> Result<&'a str> {
-    let named = |name: &str| strategies.iter().find(|own| *own == name).map(String::as_str);
     match &arguments.with {
-        Some(name) => named(name)
-            .ok_or_else(|| InputError::new("with", name, "does not take part").allowed(strategies.join(", ")).into()),
-        None => Ok(named(USUAL_YARDSTICK).unwrap_or(&strategies[0])),
+        Some(name) if !strategies.contains(name) => {
+            Err(InputError::new("with", name, "does not take part").allowed(strategies.join(", ")).into())
+        }
+        Some(name) => Ok(name),
+        None => Ok(usual_yardstick(strategies).unwrap_or_default()),
     }
 }
 
@@ -196,62 +222,6 @@ fn in_process(
     serde_json::from_slice(&output.stdout).map_err(|e| Error::system("reading", "the rows of a process", e.into()))
 }
 
-/// A strategy at a gap.
-#[derive(Serialize)]
-struct Line {
-    gap_s: f64,
-    strategy: String,
-    /// Medians over turns.
-    wake_s: f64,
-    wake_p95_s: f64,
-    region_s: f64,
-    ideal_s: f64,
-    idle_processors: Option<f64>,
-    started: f64,
-    /// Over those of the yardstick in the same round.
-    wake_ratio: Option<Estimate>,
-    region_ratio: Option<Estimate>,
-}
-
-fn lines(arguments: &Arguments, rows: &[BurstRow], strategies: &[String], yardstick: &str) -> Vec<Line> {
-    let mut lines = Vec::new();
-    for gap in &arguments.gap {
-        let of = |name: &str| -> Vec<&BurstRow> {
-            rows.iter().filter(|row| row.strategy == name && Duration::from_secs_f64(row.gap_s) == *gap).collect()
-        };
-        let others = of(yardstick);
-        for name in strategies {
-            let own = of(name);
-            let typical = |value: fn(&BurstRow) -> f64| {
-                median(&own.iter().map(|row| value(row)).collect::<Vec<f64>>()).unwrap_or(f64::NAN)
-            };
-            let ratio = |value: fn(&BurstRow) -> f64| {
-                let with = |row: &&BurstRow| {
-                    let place = (row.process, row.round);
-                    let other = others.iter().find(|other| (other.process, other.round) == place)?;
-                    Some((row.process, value(row) / value(other)))
-                };
-                let found = paired_ratio(&by_process(own.iter().filter_map(with)), LEVEL)?;
-                Some(found.ratio).filter(|_| name != yardstick)
-            };
-            let idle: Vec<f64> = own.iter().filter_map(|row| row.idle_processors).collect();
-            lines.push(Line {
-                gap_s: gap.as_secs_f64(),
-                strategy: name.clone(),
-                wake_s: typical(|row| row.wake_s),
-                wake_p95_s: typical(|row| row.wake_p95_s),
-                region_s: typical(|row| row.region_s),
-                ideal_s: typical(BurstRow::ideal_s),
-                idle_processors: median(&idle),
-                started: typical(|row| row.started),
-                wake_ratio: ratio(|row| row.wake_s),
-                region_ratio: ratio(|row| row.region_s),
-            });
-        }
-    }
-    lines
-}
-
 fn table(lines: &[Line], yardstick: &str, row: &BurstRow) -> String {
     let gap = humantime::format_duration(Duration::from_secs_f64(lines[0].gap_s));
     let head = format!(
@@ -268,7 +238,7 @@ fn table(lines: &[Line], yardstick: &str, row: &BurstRow) -> String {
         "{:>8} {:>8} {:>24} {:>9} {:>6} {:>24} {:>10} {:>8}",
         "", "", "of wakes", "", "share", "of regions", "in gaps", "started"
     );
-    let ratio = |ratio: &Option<Estimate>| ratio.as_ref().map_or_else(|| "-".to_string(), in_words);
+    let ratio = |ratio: &Option<Estimated>| ratio.as_ref().map_or_else(|| "-".to_string(), in_words);
     let line = |line: &Line| {
         let idle = line.idle_processors.map_or_else(|| "-".to_string(), |idle| format!("{idle:.2}"));
         let (wakes, regions) = (ratio(&line.wake_ratio), ratio(&line.region_ratio));
@@ -286,33 +256,7 @@ fn table(lines: &[Line], yardstick: &str, row: &BurstRow) -> String {
     [head, names, under.trim_end().to_string()]
         .into_iter()
         .chain(body)
-        .chain([verdict(lines, yardstick)])
+        .chain([verdict(lines, yardstick), String::new()])
         .collect::<Vec<_>>()
         .join("\n")
-}
-
-fn in_words(Estimate { value, interval: Interval { low, high, .. } }: &Estimate) -> String {
-    let digits = if *value < 0.1 { 3 } else { 2 };
-    format!("{value:.digits$} ({low:.digits$} to {high:.digits$})")
-}
-
-/// The pool that wakes faster than the yardstick, its regions, and the price of its waiting.
-fn verdict(lines: &[Line], yardstick: &str) -> String {
-    let faster = lines.iter().filter_map(|line| Some((line, line.wake_ratio?)));
-    let fastest = faster.filter(|(_, ratio)| ratio.interval.high < 1.0).min_by(|a, b| a.1.value.total_cmp(&b.1.value));
-    let Some((line, ratio)) = fastest else {
-        return format!("No strategy wakes faster than {yardstick} beyond the noise.\n");
-    };
-    let idle = |name: &str| {
-        let found = lines.iter().find(|line| line.strategy == name).and_then(|line| line.idle_processors);
-        found.map_or_else(|| "an unknown number of".to_string(), |idle| format!("{idle:.2}"))
-    };
-    let regions = line.region_ratio.as_ref().map_or_else(|| "an unknown number of".to_string(), in_words);
-    format!(
-        "{} wakes fastest, in {} times the time of {yardstick}. Its regions take {regions} times as long. In the gaps it keeps {} processors busy, and {yardstick} keeps {}.\n",
-        line.strategy,
-        in_words(&ratio),
-        idle(&line.strategy),
-        idle(yardstick),
-    )
 }

@@ -4,7 +4,7 @@ use super::overall_progress::OverallProgress;
 use super::prelude::*;
 use super::run::{Size, check_failures, note_doubts, rows, tell_left_out};
 use super::selftest::{claim_cases, claim_guards, has_prices, price_guards, try_cases, write_cases, write_guards};
-use super::{doctor, strict::Strict};
+use super::{bursts, doctor, strict::Strict};
 use crate::cases_file;
 use crate::check::{self, Case, Effort};
 use crate::command_line;
@@ -81,6 +81,11 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     if tries_cases {
         claim_cases(&arguments.out, &mut files)?;
     }
+    // Bursts take more than half a minute, so the quick profile leaves them to `bursts --out`.
+    let runs_bursts = profile != Profile::Quick && !report::bursts::are_in(&arguments.out);
+    if runs_bursts {
+        bursts::claim(&arguments.out.join(report::bursts::FOLDER), &mut files)?;
+    }
     doctor::examine_into(&arguments.out, console)?;
     let Total { rows, failed, timed_out, invalid, left_out, doubts } = run_all(&sweeps, profile, lab, console)?;
     if tries_cases {
@@ -89,6 +94,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     }
     if !has_prices(&arguments.out) {
         write_guards(&arguments.out, lab, &price_guards(console))?;
+    }
+    if runs_bursts {
+        bursts::measure_into(&arguments.out, lab, console)?;
     }
     let page = report::write(lab, &arguments.out)?;
     note_doubts(&doubts, console);
@@ -159,7 +167,10 @@ fn put_aside(out: &Path, lab: &Lab, console: &Console) -> Result<()> {
     // Verdicts are of the rows beside them.
     let verdicts = Some(claims::MARKDOWN).filter(|name| claims::is_markdown(&out.join(name)));
     let examination = Some(DOCTOR).filter(|name| Examination::read(&out.join(name)).is_ok());
-    let others = [FOLDER, cases_file::FOLDER, claims::FOLDER].into_iter().chain(verdicts).chain(examination);
+    let others = [FOLDER, report::bursts::FOLDER, cases_file::FOLDER, claims::FOLDER]
+        .into_iter()
+        .chain(verdicts)
+        .chain(examination);
     for name in names.into_iter().chain(others) {
         let folder = out.join(name);
         if folder.exists() {

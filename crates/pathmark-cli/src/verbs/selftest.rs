@@ -192,7 +192,8 @@ pub(super) fn write_cases(out: &Path, lab: &Lab, cases: &[&'static Case], outcom
     cases_file::write(out, &rows)
 }
 
-fn write_machine(folder: &Path, lab: &Lab) -> Result<()> {
+/// Writes the command and the machine into a folder of results, which is made if needed.
+pub(super) fn write_machine(folder: &Path, lab: &Lab) -> Result<()> {
     std::fs::create_dir_all(folder).map_err(|e| Error::system("creating", folder, e))?;
     let program = lab.program().join(" ");
     RunFile { program, ..RunFile::of_now(crate::command_line()) }.write(&folder.join(MACHINE))

@@ -3,6 +3,7 @@
 mod again;
 pub(crate) mod benches;
 pub(crate) mod block;
+pub(crate) mod bursts;
 pub(crate) mod doctor;
 pub(crate) mod guards;
 pub(crate) mod table;
@@ -46,7 +47,7 @@ pub(crate) fn is_page(path: &Path) -> bool {
 /// Tables with more rows start closed.
 const OPEN_ROWS: usize = 12;
 
-/// A part of the page: an experiment, the guards, the benches or the claims.
+/// A part of the page: an experiment, the guards, the bursts, the benches or the claims.
 #[derive(Default)]
 pub(crate) struct Section {
     /// Its anchor, the target of links.
