@@ -78,6 +78,15 @@ pub struct PointJob {
     pub image: Option<PathBuf>,
 }
 
+/// The row of a batch of runs, the first of which gave this row.
+fn batch(setup: &Setup, runs: u32, first: Record) -> Result<Record> {
+    let mut rows = vec![first];
+    for _ in 1..runs {
+        rows.push(Record::new(setup, &setup.run(None)?));
+    }
+    Record::of_batch(&rows).ok_or_else(|| Error::Check("two runs of one setup gave different images".to_string()))
+}
+
 fn without_image(point: &PointJob) -> PointJob {
     PointJob { image: None, ..point.clone() }
 }
@@ -167,7 +176,7 @@ impl CellJob {
                 return Ok(vec![row]);
             }
             let runs = batch_runs(outcome.makespan_s);
-            let row = self.batch(&setup, runs, row)?;
+            let row = batch(&setup, runs, row)?;
             *kept = Some(Kept { setup, runs, first: row.clone() });
             return Ok(vec![row]);
         }
@@ -181,16 +190,7 @@ impl CellJob {
             return self.run(lab, kept);
         };
         let row = self.row(&without_image(point), setup, &setup.run(None)?, None)?;
-        Ok(vec![self.batch(setup, *runs, row)?.with_errors_of(first)])
-    }
-
-    /// The row of a batch of runs, the first of which gave this row.
-    fn batch(&self, setup: &Setup, runs: u32, first: Record) -> Result<Record> {
-        let mut rows = vec![first];
-        for _ in 1..runs {
-            rows.push(Record::new(setup, &setup.run(None)?));
-        }
-        Record::of_batch(&rows).ok_or_else(|| Error::Check("two runs of one setup gave different images".to_string()))
+        Ok(vec![batch(setup, *runs, row)?.with_errors_of(first)])
     }
 
     /// The setup with `spp` samples per pixel; refuses a scene that has changed since the experiment began.
