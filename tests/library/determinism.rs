@@ -1,4 +1,4 @@
-//! Determinism: equal settings give equal images (docs/determinism.md, and G10, F12 of the catalogue of hard cases).
+//! Determinism: equal settings give equal images (docs/notes/determinism.md, and G10, F12 of the catalogue of hard cases).
 //! The recorded checksums are in its table (`crates/pathmark-check/src/path/order.rs`).
 
 use crate::scene_text::{Ball, load_scene};

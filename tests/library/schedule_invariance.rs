@@ -1,4 +1,4 @@
-//! Schedule invariance: workers, order, pieces and outputs change no bit (docs/determinism.md).
+//! Schedule invariance: workers, order, pieces and outputs change no bit (docs/notes/determinism.md).
 
 use pathmark::kernel::Spec;
 use pathmark::measure::{OUTPUTS, Outcome, Rounds, Settings, Setup};

@@ -1,7 +1,7 @@
 //! References: two independent halves against which images are measured, from seeds that no image under test can have.
 //!
 //! With two halves R₁ and R₂ the mean of (T - R₁)(T - R₂) is the image's squared error without the references' own noise
-//! (docs/errors.md: cross form).
+//! (docs/notes/errors.md: cross form).
 //!
 //! A film of 16 · 2^k samples is one subtree of its pixels' sums, so a longer film of the same half can continue from
 //! it with the same bits. Long renders save such films on the way, so that a killed render does not start anew.

@@ -1,4 +1,4 @@
-//! Goals of a render: a number of samples, an accuracy, or a time limit. docs/errors.md says when a look at the accuracy
+//! Goals of a render: a number of samples, an accuracy, or a time limit. docs/notes/errors.md says when a look at the accuracy
 //! stops a render ([`CONFIDENCE`], [`crate::film::Noise`]).
 //!
 //! Two facts prevent a stop by luck. The looks are few, and their estimates share most of their samples. Heavy tails, if

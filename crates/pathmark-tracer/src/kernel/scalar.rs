@@ -4,7 +4,7 @@
 //! With the sampler `independent` the whole path is compiled as one function for each estimator and several effect
 //! profiles. Other samplers are called through pointers: in scenes of smallpt's effects by compiled estimators, in other
 //! scenes by estimators that are pointers, too. Each copy of the path takes a second to compile, and pointers cost these
-//! renders up to a fifth of their time (docs/tried.md).
+//! renders up to a fifth of their time (docs/notes/tried.md).
 
 use super::clamp::{Clamp, Clamped};
 use super::entry::{KernelEntry, Planned, Request};
