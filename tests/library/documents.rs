@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The folders of the pages, and the most lines of a page: manuals are short, and notes take a reader five minutes.
-const SHELVES: [(&str, usize); 2] = [("docs", 150), ("docs/notes", 200)];
+const SHELVES: [(&str, usize); 3] = [("docs", 150), ("docs/course", 150), ("docs/notes", 200)];
 const MOST_MANUALS: usize = 12;
 const LONGEST_LINE: usize = 120;
 
@@ -17,7 +17,7 @@ fn shelf(folder: &str) -> Vec<PathBuf> {
     let entries = fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().path());
     let mut pages: Vec<PathBuf> = entries.filter(|path| path.extension().is_some_and(|end| end == "md")).collect();
     pages.sort();
-    assert!(pages.len() > 10, "{pages:?}");
+    assert!(!pages.is_empty(), "{folder}");
     pages
 }
 

@@ -10,6 +10,11 @@
   // Dark to light as in the figure: by the rank of a job's time.
   const COLOURS = ["#4a1f66", "#7d2a70", "#b03c6b", "#dc5f5a", "#f18f5b", "#f6bd82"];
 
+  // The workers of a replay, as the colours of series.
+  const WORKERS = ["#0072b2", "#d55e00", "#008c67", "#c48600", "#be649b", "#3294cd", "#141414", "#808080"];
+  // Milliseconds in which the longest schedule is replayed.
+  const PLAY_MS = 8000;
+
   const told = (microseconds) => (microseconds >= 1e3
     ? `${(microseconds / 1e3).toPrecision(4)} ms`
     : `${microseconds.toPrecision(4)} µs`);
@@ -35,7 +40,7 @@
     };
     const details = document.createElement("details");
     const summary = document.createElement("summary");
-    summary.textContent = "Job by job";
+    summary.textContent = "Job by job, and on the picture";
     const tools = document.createElement("div");
     tools.className = "tools";
     const line = document.createElement("p");
@@ -123,6 +128,75 @@
     where.href = "https://ui.perfetto.dev";
     where.textContent = "ui.perfetto.dev opens it";
     tools.append(where);
+
+    // The same jobs on the picture: a tile has its worker's colour while its job runs, and a pale one when it is done.
+    const pictures = schedules.filter((schedule) => schedule.size && schedule.size[0] > 0 && schedule.jobs.length > 0);
+    if (pictures.length > 0) {
+      const replay = document.createElement("div");
+      replay.className = "replay";
+      const controls = document.createElement("div");
+      controls.className = "tools";
+      const panes = document.createElement("div");
+      panes.className = "stage";
+      replay.append(controls, panes);
+      details.append(replay);
+      const slider = document.createElement("input");
+      Object.assign(slider, { type: "range", min: 0, max: 1000, value: 1000 });
+      slider.setAttribute("aria-label", "Time in the schedules");
+      const drawn = pictures.map((schedule) => {
+        const part = document.createElement("div");
+        part.className = "pane";
+        const caption = document.createElement("p");
+        const picture = document.createElement("canvas");
+        const scale = Math.max(1, Math.ceil(480 / schedule.size[0]));
+        [picture.width, picture.height] = schedule.size.map((length) => length * Math.min(scale, 4));
+        part.append(caption, picture);
+        panes.append(part);
+        return { schedule, caption, picture, scale: picture.width / schedule.size[0] };
+      });
+      const paint = () => {
+        const now = (Number(slider.value) / 1000) * end;
+        slider.setAttribute("aria-valuetext", told(now));
+        drawn.forEach(({ schedule, caption, picture, scale }) => {
+          const context = picture.getContext("2d");
+          context.fillStyle = "#ffffff";
+          context.fillRect(0, 0, picture.width, picture.height);
+          let done = 0;
+          schedule.jobs.forEach(([, worker, start, stop, [x0, y0, x1, y1]]) => {
+            if (start > now) return;
+            const runs = stop > now;
+            done += runs ? 0 : 1;
+            context.globalAlpha = runs ? 1 : 0.35;
+            context.fillStyle = WORKERS[worker % WORKERS.length];
+            context.fillRect(x0 * scale, y0 * scale, (x1 - x0) * scale - 0.5, (y1 - y0) * scale - 0.5);
+          });
+          context.globalAlpha = 1;
+          caption.textContent = `${schedule.title.split(":")[0]}: ${done} of ${schedule.jobs.length} jobs after ${told(Math.min(now, schedule.end))}`;
+        });
+      };
+      let timer = 0;
+      const play = addButton(controls, "Play", () => {
+        if (timer) {
+          cancelAnimationFrame(timer);
+          timer = 0;
+          play.textContent = "Play";
+          return;
+        }
+        if (Number(slider.value) >= 1000) slider.value = 0;
+        const [from, began] = [Number(slider.value), performance.now()];
+        play.textContent = "Pause";
+        const step = (time) => {
+          slider.value = Math.min(1000, from + (time - began) / PLAY_MS * 1000);
+          paint();
+          timer = Number(slider.value) < 1000 ? requestAnimationFrame(step) : 0;
+          if (!timer) play.textContent = "Play";
+        };
+        timer = requestAnimationFrame(step);
+      });
+      controls.append(slider);
+      slider.addEventListener("input", paint);
+      details.addEventListener("toggle", paint);
+    }
 
     // The job under the pointer.
     const found = (event) => {

@@ -47,8 +47,7 @@ const addButton = (within, label, act) => {
     const filters = names.filter((name) => Object.hasOwn(again.filters, name)).map((name) => again.filters[name]);
     return [again.run, ...new Set(filters), again.out].join(" ");
   };
-  const show = (event) => {
-    const note = event.target.closest ? event.target.closest("circle.note") : null;
+  const showNote = (note, x, y) => {
     value.hidden = !note;
     if (!note) return;
     value.textContent = note.getAttribute("aria-label");
@@ -56,10 +55,30 @@ const addButton = (within, label, act) => {
     if (count > 0) addLine(count === 1 ? "one value" : `${count} values`);
     const command = commandOf(note);
     if (command) addLine(command);
-    const left = Math.min(event.clientX + 14, window.innerWidth - value.offsetWidth - 8);
+    const left = Math.min(x + 14, window.innerWidth - value.offsetWidth - 8);
     value.style.left = `${Math.max(8, left)}px`;
-    value.style.top = `${Math.max(8, event.clientY - value.offsetHeight - 12)}px`;
+    value.style.top = `${Math.max(8, y - value.offsetHeight - 12)}px`;
   };
+  const show = (event) => {
+    const note = event.target.closest ? event.target.closest("circle.note") : null;
+    showNote(note, event.clientX, event.clientY);
+  };
+  // By keyboard: the arrow keys go from value to value of the figure that has the focus.
+  all("figure > svg, figure > .other > svg").forEach((svg) => {
+    const notes = all("circle.note", svg);
+    if (notes.length === 0) return;
+    let place = -1;
+    svg.setAttribute("tabindex", "0");
+    svg.addEventListener("keydown", (event) => {
+      const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+      if (!step) return;
+      event.preventDefault();
+      place = (place + step + notes.length) % notes.length;
+      const box = notes[place].getBoundingClientRect();
+      showNote(notes[place], box.left + box.width / 2, box.top);
+    });
+    svg.addEventListener("blur", () => { value.hidden = true; });
+  });
   all("circle.note").forEach((note) => {
     // The browser's own tooltip comes late and not at all for a finger.
     const title = note.querySelector("title");
@@ -72,18 +91,39 @@ const addButton = (within, label, act) => {
   // A click on an entry of a legend switches its series off and on.
   all("figure svg").forEach((svg) => {
     const named = (selector, name) => all(selector, svg).filter((part) => part.dataset.series === name);
-    all("g.legend", svg).forEach((entry) => entry.addEventListener("click", () => {
+    all("g.legend", svg).forEach((entry) => {
       const parts = named("g.series", entry.dataset.series);
       if (parts.length === 0) return;
-      const off = entry.classList.toggle("is-off");
-      parts.forEach((part) => part.classList.toggle("is-off", off));
-      named("circle.note", entry.dataset.series).forEach((note) => { note.style.display = off ? "none" : ""; });
-    }));
+      const turn = () => {
+        const off = entry.classList.toggle("is-off");
+        entry.setAttribute("aria-pressed", String(!off));
+        parts.forEach((part) => part.classList.toggle("is-off", off));
+        named("circle.note", entry.dataset.series).forEach((note) => { note.style.display = off ? "none" : ""; });
+      };
+      entry.setAttribute("tabindex", "0");
+      entry.setAttribute("role", "button");
+      entry.setAttribute("aria-label", `Line ${entry.dataset.series}`);
+      entry.setAttribute("aria-pressed", "true");
+      entry.addEventListener("click", turn);
+      entry.addEventListener("keydown", (event) => {
+        if (event.key !== "Enter" && event.key !== " ") return;
+        event.preventDefault();
+        event.stopPropagation();
+        turn();
+      });
+    });
   });
 
   // Downloads.
   const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
-  const asSvg = (svg) => new Blob([new XMLSerializer().serializeToString(svg)], { type: "image/svg+xml" });
+  // A figure by itself has the style sheet of all figures, with the colours on white paper.
+  const asSvg = (svg) => {
+    const copy = svg.cloneNode(true);
+    const style = document.createElementNS("http://www.w3.org/2000/svg", "style");
+    style.textContent = `${document.getElementById("figure-style").textContent} text { font-family: "DejaVu Sans", sans-serif; }`;
+    copy.prepend(style);
+    return new Blob([new XMLSerializer().serializeToString(copy)], { type: "image/svg+xml" });
+  };
   const asCsv = (svg) => {
     const keys = ["series", "of", "value", "low", "high", "count"];
     const rows = all("circle.note", svg).map((note) => keys.map((key) => quoted(note.dataset[key] || "")).join(","));
@@ -135,6 +175,10 @@ const addButton = (within, label, act) => {
     const body = table.tBodies[0];
     if (!table.tHead || !body) return;
     const heads = Array.from(table.tHead.rows[0].cells);
+    // Narrow screens show a row as a card, with the head of each column before its cell.
+    Array.from(body.rows).forEach((row) => Array.from(row.cells).forEach((cell, column) => {
+      if (heads[column]) cell.dataset.head = heads[column].textContent;
+    }));
     heads.forEach((head, column) => {
       const sorter = document.createElement("button");
       sorter.type = "button";

@@ -34,6 +34,7 @@ pub use results::Results;
 pub use words::counted;
 
 use crate::error::{Error, InputError, Result};
+use crate::experiment::MACHINE;
 use crate::files::Files;
 use crate::lab::Lab;
 use page::{Section, benches, block, doctor, guards, table};
@@ -66,7 +67,9 @@ pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
     for folder in experiment_folders(out)? {
         let results = Results::read(lab, out, &folder)?;
         let blocks = figures::blocks(&results)?;
-        add(&folder, Section::of(results, blocks))?;
+        let own = folder.file_name().unwrap_or_default().to_string_lossy();
+        let files = ["records.csv", MACHINE].map(|file| format!("{own}/{file}")).to_vec();
+        add(&folder, Section { files, ..Section::of(results, blocks) })?;
     }
     for section in [guards::section(out)?, page::bursts::section(out)?, benches::section(out)?].into_iter().flatten() {
         add(&out.join(&section.name), section)?;
@@ -74,9 +77,7 @@ pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
     if !sections.is_empty() {
         sections.extend(doctor::section(out)?);
     }
-    if let Some(section) = claims::section(lab, out)? {
-        sections.insert(0, section);
-    }
+    sections.extend(claims::section(lab, out)?);
     if sections.is_empty() {
         let problem = "holds no experiment: no folder in it has a records.csv";
         return Err(InputError::new("folder", out.display().to_string(), problem).into());

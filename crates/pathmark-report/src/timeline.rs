@@ -30,7 +30,9 @@ pub(super) fn lanes(trace: &TraceFile, balance: &Balance, processors: usize) -> 
         start_s: row.start_s,
         stop_s: row.stop_s,
         value: (row.stop_s - row.start_s) * 1e3,
+        area: [row.x0, row.y0, row.x1, row.y1],
     };
+    let spec = &trace.header.settings.spec;
     let makespan_s = trace.header.makespan_s;
     let workers = trace.header.workers as usize;
     let utilisation = if workers > processors {
@@ -44,6 +46,7 @@ pub(super) fn lanes(trace: &TraceFile, balance: &Balance, processors: usize) -> 
         title: format!("{}: {}, {utilisation}", name(trace), duration(makespan_s)),
         workers: trace.header.workers as usize,
         makespan_s,
+        size: [spec.width, spec.height],
         jobs: trace.rows.iter().map(bar).collect(),
     }
 }

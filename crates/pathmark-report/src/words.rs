@@ -40,9 +40,20 @@ pub(super) fn ratio_bars<T: Into<Estimated>>(told: impl IntoIterator<Item = T>) 
     format!("Ratios within a repetition. {}", bars(told))
 }
 
-/// An interval with the confidence that it reaches: few values cannot reach 95 %.
+/// An interval, with its confidence where that is not 95 %: few values cannot reach it, and medians pass it.
 pub(super) fn with_level(interval: &Interval, digits: usize) -> String {
-    format!("{:.digits$} to {:.digits$} ({:.1} %)", interval.low, interval.high, interval.percent())
+    format!("{:.digits$} to {:.digits$}{}", interval.low, interval.high, unusual_level(interval))
+}
+
+/// A value with its interval in brackets.
+pub(super) fn with_interval(value: f64, interval: &Interval, digits: usize) -> String {
+    format!("{value:.digits$} ({})", with_level(interval, digits))
+}
+
+/// The confidence of an interval in brackets; empty if it is 95 %, as the page says at its beginning.
+pub(super) fn unusual_level(interval: &Interval) -> String {
+    let percent = format!("{:.1}", interval.percent());
+    if percent == "95.0" { String::new() } else { format!(" ({percent} %)") }
 }
 
 /// The confidence of some intervals, in words for a caption: of medians, or of means over processes of pairs.
@@ -81,6 +92,12 @@ mod tests {
         assert_eq!(of(&[0.95, 0.75, 0.96]), "interval of the typical value, 75.0 to 96.0 % confidence");
         assert_eq!(of(&[0.95; 3]), "interval of the typical value, 95.0 % confidence");
         assert_eq!(of(&[]), "no interval, for want of repetitions");
+    }
+
+    #[test]
+    fn only_an_unusual_confidence_is_told() {
+        let of = |level: f64| with_level(&Interval { low: 0.5, high: 1.5, level }, 1);
+        assert_eq!([of(0.95), of(0.968)], ["0.5 to 1.5", "0.5 to 1.5 (96.8 %)"]);
     }
 
     #[test]

@@ -364,8 +364,13 @@ pub(crate) fn blocks(answers: &[Answer<'_>]) -> Vec<Block> {
     });
     let counted = Table::of_text("Verdicts", &heads, &rows.collect::<Vec<_>>());
     let mut blocks = vec![Block::Table { stem: "verdicts", table: counted }];
+    let (unanswered, answered): (Vec<&Answer<'_>>, Vec<&Answer<'_>>) =
+        answers.iter().partition(|answer| answer.verdict == Verdict::NotAnswered);
     for (stem, letter) in [("claims-a", "A"), ("claims-b", "B"), ("claims-c", "C"), ("claims-d", "D")] {
-        let own: Vec<&Answer<'_>> = answers.iter().filter(|answer| answer.report.report == letter).collect();
+        let mut own: Vec<&Answer<'_>> =
+            answered.iter().copied().filter(|answer| answer.report.report == letter).collect();
+        // Those that rows have judged come first.
+        own.sort_by_key(|answer| (std::cmp::Reverse(answer.verdict.says()), answer.claim.id));
         let Some(first) = own.first() else { continue };
         blocks.push(Block::finding(format!("Report {letter}, {}. {}", first.report.title, first.report.about.trim())));
         let title = format!("Report {letter}: claims and verdicts");
@@ -379,6 +384,19 @@ pub(crate) fn blocks(answers: &[Answer<'_>]) -> Vec<Block> {
                 .column("reported", |a| a.claim.reported.clone())
                 .column("interval", |a| a.rule())
                 .column("conditions", |a| joined([a.why.clone(), a.age().to_string()]))
+                .end(),
+        );
+    }
+    if !unanswered.is_empty() {
+        let count = counted(unanswered.len(), "claim");
+        blocks.push(Block::notice(format!(
+            "{count} of the reports cannot be answered by these rows. `pathmark reproduce --reports` measures what they need."
+        )));
+        blocks.push(
+            Block::table("claims-unanswered", "Claims without rows here", unanswered)
+                .column("claim", |a| format!("{}. {}", a.claim.id, a.claim.claim))
+                .column("report", |a| a.report.report.clone())
+                .column("verdict", |a| a.verdict.to_string())
                 .end(),
         );
     }

@@ -162,7 +162,7 @@ fn prices(
         ratio_bars(found.iter().flat_map(|found| found.unused_ratio().into_iter().chain([found.used.1]))),
     );
     let place = |kind: &Kind| format!("{}, {}", kind.scene, kind.profile);
-    let finding = generality(&found);
+    let findings = generality(&found, stem).into_iter().flatten();
     let table = Block::table(table, format!("The price of an effect, kernel {kernel}"), &found)
         .column("effect", |found| found.price.effect.clone())
         .column("absent", |found| place(&found.price.absent))
@@ -177,10 +177,10 @@ fn prices(
         .estimated("ratio used / absent", Decimals(3), |found| Estimated::from(found.used.1))
         .number("processes", Decimals(0), |found| found.used.1.count.map(|count| count as f64))
         .end();
-    [Block::figure(stem, plot)].into_iter().chain(finding).chain([table]).collect()
+    [Block::figure(stem, plot)].into_iter().chain(findings).chain([table]).collect()
 }
 
-fn generality(found: &[Priced<'_>]) -> Option<Block> {
+fn generality(found: &[Priced<'_>], stem: &'static str) -> Option<[Block; 2]> {
     let ratios = || found.iter().filter_map(|found| Some((found.price.effect.as_str(), found.unused_ratio()?)));
     let ranked = ratios().filter(|(_, ratio)| !ratio.is_partial);
     let (dearest, ratio) = ranked.max_by(|a, b| a.1.value.total_cmp(&b.1.value))?;
@@ -190,12 +190,25 @@ fn generality(found: &[Priced<'_>]) -> Option<Block> {
     } else {
         format!("These cost more than the noise: {}", beyond.join("; "))
     };
-    Some(Block::finding(format!(
+    let percent = Estimated::from(ratio.estimate()).times(100.0);
+    let (low, high) = percent.bar().unwrap_or_default();
+    let text = format!(
+        "An effect that the scene does not use costs up to {:.1} % ({:.1} to {:.1}; {dearest}) of the time if it is compiled in. An absent one costs nothing: it is not compiled in.",
+        percent.value - 100.0,
+        low - 100.0,
+        high - 100.0,
+    );
+    let answer = Block::Answer { text, stem, is_told: high - low <= 2.0 * MOST_PERCENT };
+    let finding = Block::finding(format!(
         "An effect that is compiled into the {} kernel but not used by the scene makes a sample take {} times as long at most ({dearest}). {verdict}.",
         found.first()?.price.absent.kernel,
         ratio.in_words(3),
-    )))
+    ));
+    Some([answer, finding])
 }
+
+/// Half of the interval of a price in percent with which it counts as known.
+const MOST_PERCENT: f64 = 2.0;
 
 /// A scene under the profile that fits it and under the largest, and the ratio of their times.
 struct Fit<'a> {

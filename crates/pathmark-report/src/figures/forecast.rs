@@ -39,7 +39,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let (spec, spp) = (&settings.spec, settings.spp);
         let of = format!("{}x{}, {spp} spp, {jobs} {decomposition}", spec.width, spec.height);
         if decomposition == "rows" {
-            blocks.extend(claim(&rows, &typical_costs(&costs)));
+            blocks.extend(claim(&rows, &typical_costs(&costs)).into_iter().flatten());
         }
         blocks.extend(forecast_blocks(&rows, &format!("{}, {of}, simulated", settings.scene), true, &[]));
     }
@@ -47,7 +47,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 }
 
 /// A finding about report A's "1/h times faster".
-fn claim(rows: &[Forecast], costs: &[f64]) -> Option<Block> {
+fn claim(rows: &[Forecast], costs: &[f64]) -> Option<[Block; 2]> {
     let largest = rows.iter().map(|row| row.workers).max()?;
     let at = |cores: usize| rows.iter().find(|row| row.strategy == "thread-per-job" && row.workers == cores);
     let (two, sixteen, all) = (at(2)?, at(16)?, at(largest)?);
@@ -55,7 +55,14 @@ fn claim(rows: &[Forecast], costs: &[f64]) -> Option<Block> {
     let best = best.max_by(|a, b| a.speedup.value.total_cmp(&b.speedup.value))?;
     let mean = costs.iter().sum::<f64>() / costs.len() as f64;
     let told = |row: &Forecast| short(row.speedup.value, 3) + &between(Estimated::from(row.speedup).bar(), 3);
-    Some(Block::finding(format!(
+    let text = format!(
+        "On {largest} cores a thread for each row would be {} times as fast as serial, and the best schedule, {}, {} times. Simulated.",
+        told(all),
+        best.strategy,
+        told(best),
+    );
+    let answer = Block::Answer { text, stem: "forecast-speedup", is_told: true };
+    let finding = Block::finding(format!(
         "Simulated, with intervals of {:.0} % confidence: {THREAD_PER_ROW} (a thread for each of {} rows) would be {} times as fast as serial on 2 cores, {} times on 16 and {} times on {largest}, not {largest}: the longest row takes {:.2} times the mean ({:.2} times the \
          median), which alone allows no more than {:.0}, and threads are started one after the other. The best of all schedules on {largest} cores, {}, reaches {}. {}",
         100.0 * LEVEL,
@@ -69,5 +76,6 @@ fn claim(rows: &[Forecast], costs: &[f64]) -> Option<Block> {
         best.strategy,
         told(best),
         band(all.traces, all.calibrations),
-    )))
+    ));
+    Some([answer, finding])
 }

@@ -170,8 +170,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     } else {
         Block::figure("rmse-against-time", Panels { main: first, others })
     };
-    let finding = finding(&by_setting[main], &goals).map(Block::finding);
-    Ok([figure].into_iter().chain(finding).chain([prices(&lines, &goals), points(&lines)]).collect())
+    let findings = findings(&by_setting[main], &goals).into_iter().flatten();
+    Ok([figure].into_iter().chain(findings).chain([prices(&lines, &goals), points(&lines)]).collect())
 }
 
 /// The result in the scene with the most lines: the factor on the seconds that halves the error.
@@ -189,7 +189,7 @@ fn title(lines: &[&Line<'_>]) -> String {
 }
 
 /// Compares the prices of the smallest goal that most lines of a scene have reached.
-fn finding(lines: &[&Line<'_>], goals: &[Positive]) -> Option<String> {
+fn findings(lines: &[&Line<'_>], goals: &[Positive]) -> Option<[Block; 2]> {
     let measured = |goal: f64| {
         let price = |line: &&Line<'_>| match line.price(goal) {
             Some(MeasuredPrice::Between(found)) => Some((line.of.name(), found)),
@@ -206,7 +206,11 @@ fn finding(lines: &[&Line<'_>], goals: &[Positive]) -> Option<String> {
         format!("{:.3} s{interval} with {name}", found.seconds)
     };
     let (scene, ..) = lines.first()?.of.setting;
-    Some(format!("{scene}: an RMSE of {goal} costs {} and {}, both measured.", told(cheapest), told(dearest)))
+    let (least, most) = (cheapest.1.interval, dearest.1.interval);
+    let is_told = least.zip(most).is_some_and(|(least, most)| least.high < most.low);
+    let text = format!("An RMSE of {goal} on {scene} costs {}, and {}.", told(dearest), told(cheapest));
+    let finding = format!("{scene}: an RMSE of {goal} costs {} and {}, both measured.", told(cheapest), told(dearest));
+    Some([Block::Answer { text, stem: "rmse-against-time", is_told }, Block::finding(finding)])
 }
 
 /// The price of each goal along each line.

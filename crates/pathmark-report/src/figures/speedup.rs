@@ -6,7 +6,7 @@ use crate::measure::TimingConcerns;
 use crate::prelude::*;
 use crate::schedule::is_of_ranks;
 use crate::serial::Serial;
-use crate::words::hollow;
+use crate::words::{hollow, with_interval};
 
 /// A chart with more lines than this is unreadable, so strategies become named rows instead.
 const MOST_LINES: usize = 8;
@@ -48,7 +48,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let found = Speedups { results, workload, serial, all, asked, processors, images, usual };
     let contest = found.contest()?;
     let mut blocks = found.figures(contest.as_ref());
-    blocks.extend(contest.map(|contest| contest.finding(found.processors)));
+    blocks.extend(contest.iter().flat_map(|contest| [contest.answer(), contest.finding(found.processors)]));
     blocks.extend(found.thread_per_row());
     blocks.push(found.table());
     Ok(blocks)
@@ -79,6 +79,23 @@ impl Contest<'_> {
             list(&self.slower),
             list(&self.open),
         ))
+    }
+
+    fn answer(&self) -> Block {
+        let told = |ratio: &Ratio| with_interval(ratio.value, &ratio.interval, 2);
+        let others = self.slower.len() + self.open.len();
+        let ties = format!("{} is {} times as fast as serial", self.best.name, told(&self.speedup));
+        let slowest = self.slower.iter().max_by(|a, b| a.1.value.total_cmp(&b.1.value));
+        let text = match slowest {
+            None => format!("{ties}; none of {others} others is told apart from it."),
+            Some((slowest, ratio)) => format!(
+                "{ties}, and {} of {others} others tie with it. The slowest, {}, takes {} times as long.",
+                self.open.len(),
+                slowest.name,
+                told(ratio),
+            ),
+        };
+        Block::Answer { text, stem: "speedup", is_told: slowest.is_some() }
     }
 
     fn is_open(&self, schedule: &Schedule) -> bool {

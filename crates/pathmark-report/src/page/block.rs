@@ -10,6 +10,9 @@ use std::path::Path;
 pub enum Block {
     /// The result in a sentence or two.
     Finding(String),
+    /// The result in one sentence for the beginning of the page, with the name of its figure, and whether the rows tell it:
+    /// `false` if their intervals leave it open.
+    Answer { text: String, stem: &'static str, is_told: bool },
     /// A missing part, with the reason. It says nothing about the measurements.
     Notice(String),
     /// A figure as SVG and PNG.
@@ -47,7 +50,7 @@ impl Block {
     pub fn save(&self, folder: &Path) -> Result<()> {
         std::fs::create_dir_all(folder).map_err(|e| Error::system("creating", folder, e))?;
         match self {
-            Self::Finding(_) | Self::Notice(_) => Ok(()),
+            Self::Finding(_) | Self::Answer { .. } | Self::Notice(_) => Ok(()),
             Self::Figure { stem, figure } => figure.save(folder, stem),
             Self::Picture { stem, png, .. } => {
                 atomic_file::write(&folder.join(format!("{stem}.png")), |file| file.write_all(png))

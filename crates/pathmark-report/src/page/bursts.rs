@@ -51,6 +51,7 @@ pub(crate) fn section(out: &Path) -> Result<Option<Section>> {
         place: u32::MAX,
         rows: rows.len(),
         run: Some(run),
+        files: vec![format!("{FOLDER}/{FILE}")],
         blocks,
         ..Section::default()
     }))

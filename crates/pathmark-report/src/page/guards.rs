@@ -3,7 +3,7 @@
 use crate::experiment::{Chapter, read_run_file};
 use crate::guard_prices::{FILE, FOLDER, PriceRow, read_prices};
 use crate::page::Section;
-use crate::plot::Dot;
+use crate::plot::{Dot, number};
 use crate::prelude::*;
 use std::path::Path;
 
@@ -22,7 +22,8 @@ pub(crate) fn section(out: &Path) -> Result<Option<Section>> {
     }
     let rows = read_prices(&path)?;
     let run = read_run_file(&folder.join("machine.toml"))?;
-    let blocks = vec![Block::figure("guards", plot(&rows, run.machine.line())), prices(&rows), meanings(&rows)];
+    let figure = Block::figure("guards", plot(&rows, run.machine.line()));
+    let blocks = [figure].into_iter().chain(answer(&rows)).chain([prices(&rows), meanings(&rows)]).collect();
     Ok(Some(Section {
         name: FOLDER.to_string(),
         title: "What being right costs: the guards".to_string(),
@@ -31,9 +32,28 @@ pub(crate) fn section(out: &Path) -> Result<Option<Section>> {
         chapter: Some(Chapter::HardInputs),
         rows: rows.len(),
         run: Some(run),
+        files: vec![format!("{FOLDER}/{FILE}")],
         blocks,
         ..Section::default()
     }))
+}
+
+/// The guard that costs most, and what goes wrong without it.
+fn answer(rows: &[PriceRow]) -> Option<Block> {
+    let priced = || rows.iter().filter_map(|row| Some((row, percent(row)?)));
+    let (row, share) = priced().max_by(|a, b| a.1.value.total_cmp(&b.1.value))?;
+    let (low, high) = share.bar()?;
+    let short = |value: f64| number::short(value, 2);
+    let text = format!(
+        "{} guards keep hard inputs right. The dearest, {}, costs {:.1} % ({low:.1} to {high:.1}) of a render; without it, the {} is {} instead of {}.",
+        priced().count(),
+        row.guard,
+        share.value,
+        row.error,
+        short(row.error_without),
+        short(row.error_with),
+    );
+    Some(Block::Answer { text, stem: "guards", is_told: high - low <= 4.0 })
 }
 
 fn plot(rows: &[PriceRow], machine: String) -> DotPlot {

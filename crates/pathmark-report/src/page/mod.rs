@@ -1,9 +1,11 @@
 //! `report.html`: the whole report in one file, readable without a network.
 
 mod again;
+mod answers;
 pub(crate) mod benches;
 pub(crate) mod block;
 pub(crate) mod bursts;
+mod compact;
 pub(crate) mod doctor;
 pub(crate) mod guards;
 pub(crate) mod table;
@@ -12,14 +14,16 @@ use crate::error::Result;
 use crate::experiment::{Chapter, Definition, RunFile};
 use crate::measure::{LeftOut, Record, TimingConcerns};
 use crate::results::Results;
+use crate::prelude::joined;
 use crate::words::counted;
 use again::Again;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use block::Block;
+use compact::Styles;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde::Serialize;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -33,15 +37,19 @@ const SCRIPTS: [&str; 3] = [
 ];
 
 const TITLE: &str = "Pathmark: report";
+/// The program that wrote a page, in its head.
+const GENERATOR: &str = "<meta name=\"generator\" content=\"Pathmark\">";
 
-/// The title is within this many bytes from the beginning of a page.
+/// The generator is within this many bytes from the beginning of a page.
 const HEAD_BYTES: u64 = 1024;
 
 /// Whether a file is a report page, which a new one may replace.
 pub(crate) fn is_page(path: &Path) -> bool {
     let mut head = Vec::new();
     let read = File::open(path).and_then(|file| file.take(HEAD_BYTES).read_to_end(&mut head));
-    read.is_ok() && String::from_utf8_lossy(&head).contains(&format!("<title>{TITLE}</title>"))
+    let head = String::from_utf8_lossy(&head);
+    // Pages of older versions have no generator.
+    read.is_ok() && (head.contains(GENERATOR) || head.contains(&format!("<title>{TITLE}</title>")))
 }
 
 /// Tables with more rows start closed.
@@ -71,10 +79,17 @@ pub(crate) struct Section {
     pub(crate) doubts: TimingConcerns,
     /// Command and machine; `None` for the claims, which are computed anew for each page.
     pub(crate) run: Option<RunFile>,
+    /// Its files of raw data, as paths from the page.
+    pub(crate) files: Vec<String>,
     pub(crate) blocks: Vec<Block>,
 }
 
 impl Section {
+    /// Whether half of its rows or more are in doubt.
+    fn is_disturbed(&self) -> bool {
+        self.doubts.is_any() && 2 * self.doubts.count() >= self.rows
+    }
+
     pub(crate) fn of(results: Results, blocks: Vec<Block>) -> Self {
         let rows = results.len();
         let doubts = results.doubts();
@@ -92,30 +107,40 @@ impl Section {
 const LONGEST_CELL: usize = 56;
 
 pub(crate) fn html(sections: &[Section]) -> Result<String> {
-    let claims = sections.iter().filter(|section| section.chapter.is_none());
-    let claims = claims.map(|section| self::section(section, true)).collect::<Result<Vec<Markup>>>()?;
+    let mut styles = Styles::default();
+    let claims: Vec<&Section> = sections.iter().filter(|section| section.chapter.is_none()).collect();
     let chapters: Vec<(Chapter, Vec<&Section>)> =
         Chapter::ALL.into_iter().map(|chapter| (chapter, of_chapter(sections, chapter))).collect();
     let chapters: Vec<_> = chapters.into_iter().filter(|(_, sections)| !sections.is_empty()).collect();
-    let body = chapters.iter().map(|(chapter, sections)| self::chapter(*chapter, sections));
-    let body = body.collect::<Result<Vec<Markup>>>()?;
+    let answers = answers::markup(sections, &mut styles)?;
+    let mut parts = Vec::new();
+    for (chapter, sections) in &chapters {
+        parts.push(self::chapter(*chapter, sections, &mut styles)?);
+    }
+    for claims in claims {
+        parts.push(section(claims, true, &mut styles)?);
+    }
+    let title = title(sections);
     let page = html! {
         (DOCTYPE)
         html lang="en" {
             head {
                 meta charset="utf-8";
+                (PreEscaped(GENERATOR))
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                title { (TITLE) }
+                title { (title) }
+                style #figure-style { (PreEscaped(styles.sheet())) }
                 style { (PreEscaped(STYLE)) }
             }
             body {
                 nav aria-label="Contents" { (contents(sections, &chapters)) }
                 main {
-                    h1 { (TITLE) }
-                    p { "How should unequal pieces of work be scheduled on many cores, and what does accuracy cost in time? "
-                        "Every number below comes from the rows in " code { "records.csv" } " beside this page; " code { "METHODOLOGY.md" } " says how." }
+                    h1 { (title) }
+                    (about(sections))
+                    (banner(sections))
+                    (answers)
                     (in_short(sections, &chapters))
-                    @for part in claims.iter().chain(&body) { (part) }
+                    @for part in &parts { (part) }
                     (sources(sections))
                 }
                 @for script in SCRIPTS { script { (PreEscaped(script)) } }
@@ -123,6 +148,56 @@ pub(crate) fn html(sections: &[Section]) -> Result<String> {
         }
     };
     Ok(page.into_string())
+}
+
+/// The title of a page: that of its experiment, if it is the only one.
+fn title(sections: &[Section]) -> &str {
+    let mut own = sections.iter().filter(|section| section.run.is_some());
+    match (own.next(), own.next()) {
+        (Some(only), None) => &only.title,
+        _ => TITLE,
+    }
+}
+
+/// When and where the rows were measured, and by which sources; several machines are in the table at the end.
+fn about(sections: &[Section]) -> Markup {
+    let runs = || sections.iter().filter_map(|section| section.run.as_ref());
+    let started = runs().map(|run| run.started_utc.as_str()).filter(|started| !started.is_empty());
+    let days: BTreeSet<&str> = started.filter_map(|started| started.split('T').next()).collect();
+    let machines: BTreeSet<String> = runs().map(|run| run.machine.line()).collect();
+    let commits: BTreeSet<&str> = runs().map(|run| run.machine.commit.as_str()).collect();
+    let few = |found: Vec<String>, things: &str| match found.as_slice() {
+        [] => String::new(),
+        [only] => only.clone(),
+        all => format!("{} {things}", all.len()),
+    };
+    let days: Vec<&str> = days.into_iter().collect();
+    let when = match days.as_slice() {
+        [] => String::new(),
+        [day] => (*day).to_string(),
+        [first, .., last] => format!("{first} to {last}"),
+    };
+    let commits = few(commits.into_iter().filter(|commit| !commit.is_empty()).map(|own| format!("commit {own}")).collect(), "commits");
+    let facts = joined([when, few(machines.into_iter().collect(), "machines"), commits]);
+    html! {
+        p.facts { (facts) }
+        p.facts { "Intervals have 95 % confidence where they name no other. Every number comes from the rows that the section links to." }
+    }
+}
+
+/// A warning if more than a tenth of all rows are in doubt.
+fn banner(sections: &[Section]) -> Markup {
+    let rows: usize = sections.iter().filter(|section| section.run.is_some()).map(|section| section.rows).sum();
+    let doubted: usize = sections.iter().map(|section| section.doubts.count()).sum();
+    let disturbed = sections.iter().filter(|section| section.is_disturbed()).count();
+    html! {
+        @if 10 * doubted > rows {
+            div.failed.banner {
+                p { strong { (doubted) " of " (rows) " rows were disturbed." } " Other programs, the clock or the host of a virtual machine changed their times. "
+                    @if disturbed > 0 { "Figures of " (counted(disturbed, "section")) " with half of the rows in doubt are grey." } }
+            }
+        }
+    }
 }
 
 /// The sections of a chapter, in their order.
@@ -138,15 +213,16 @@ fn contents(sections: &[Section], chapters: &[(Chapter, Vec<&Section>)]) -> Mark
         details open {
             summary { "Contents" }
             ul {
-                @if sections.iter().any(|section| section.in_short.is_some()) { li { (link(IN_SHORT, "In short")) } }
-                @for section in sections.iter().filter(|section| section.chapter.is_none()) {
-                    li { (link(&section.name, &section.title)) }
-                }
+                @if answers::is_any(sections) { li { (link(answers::ANCHOR, "The answers")) } }
+                @if sections.iter().any(|section| section.in_short.is_some()) { li { (link(IN_SHORT, IN_SHORT_TITLE)) } }
                 @for (chapter, sections) in chapters {
                     li {
                         (link(chapter.anchor(), chapter.title()))
                         ul { @for section in sections { li { (link(&section.name, &section.title)) } } }
                     }
+                }
+                @for section in sections.iter().filter(|section| section.chapter.is_none()) {
+                    li { (link(&section.name, &section.title)) }
                 }
                 li { (link(SOURCES, SOURCES_TITLE)) }
             }
@@ -155,27 +231,28 @@ fn contents(sections: &[Section], chapters: &[(Chapter, Vec<&Section>)]) -> Mark
 }
 
 const IN_SHORT: &str = "in-short";
+const IN_SHORT_TITLE: &str = "More findings";
 const SOURCES: &str = "sources";
 const SOURCES_TITLE: &str = "Machine, method, raw data";
 
 /// The most important findings, each with a link to its section.
 fn in_short(sections: &[Section], chapters: &[(Chapter, Vec<&Section>)]) -> Markup {
     let claims = sections.iter().filter(|section| section.chapter.is_none());
-    let ordered = claims.chain(chapters.iter().flat_map(|(_, sections)| sections.iter().copied()));
+    let ordered = chapters.iter().flat_map(|(_, sections)| sections.iter().copied()).chain(claims);
     let found: Vec<(&Section, &str)> =
         ordered.filter_map(|section| Some((section, section.in_short.as_deref()?))).collect();
     html! {
         @if !found.is_empty() {
             section.in-short id=(IN_SHORT) {
-                h2 { "In short" }
+                h2 { (IN_SHORT_TITLE) }
                 ul { @for (section, text) in found { li { (prose(text)) " " a href={ "#" (section.name) } { (section.title) } } } }
             }
         }
     }
 }
 
-fn chapter(chapter: Chapter, sections: &[&Section]) -> Result<Markup> {
-    let parts = sections.iter().map(|own| section(own, false)).collect::<Result<Vec<Markup>>>()?;
+fn chapter(chapter: Chapter, sections: &[&Section], styles: &mut Styles) -> Result<Markup> {
+    let parts = sections.iter().map(|own| section(own, false, styles)).collect::<Result<Vec<Markup>>>()?;
     Ok(html! {
         h2 id=(chapter.anchor()) { (chapter.title()) }
         @for part in &parts { (part) }
@@ -220,10 +297,13 @@ fn sources(sections: &[Section]) -> Markup {
 }
 
 /// A section. Its heading has the rank of a chapter's if it is a chapter itself.
-fn section(section: &Section, is_chapter: bool) -> Result<Markup> {
-    let parts = section.blocks.iter().map(|block| part(&section.name, block)).collect::<Result<Vec<Markup>>>()?;
+fn section(section: &Section, is_chapter: bool, styles: &mut Styles) -> Result<Markup> {
+    let first_table = section.blocks.iter().position(|block| matches!(block, Block::Table { .. }));
+    let blocks = section.blocks.iter().enumerate();
+    let parts = blocks.map(|(at, block)| part(&section.name, block, first_table == Some(at), styles));
+    let parts = parts.collect::<Result<Vec<Markup>>>()?;
     Ok(html! {
-        section id=(section.name) data-again=[section.again.as_ref().map(json)] {
+        section.disturbed[section.is_disturbed()] id=(section.name) data-again=[section.again.as_ref().map(json)] {
             @if is_chapter { h2 { (section.title) } } @else { h3 { (section.title) } }
             p { strong { "Question. " } (prose(&section.question)) }
             @if !section.failed.is_empty() {
@@ -264,25 +344,33 @@ fn failures(failed: &[Record]) -> Vec<(&str, Vec<&str>)> {
     errors
 }
 
-fn part(section: &str, block: &Block) -> Result<Markup> {
+fn part(section: &str, block: &Block, is_first_table: bool, styles: &mut Styles) -> Result<Markup> {
     Ok(match block {
+        Block::Answer { .. } => Markup::default(),
         Block::Finding(text) => html! { p.finding { (prose(text)) } },
         Block::Notice(text) => html! { p.notice { (prose(text)) } },
         Block::Figure { stem, figure } => html! {
             figure id={ (section) "-" (stem) } {
-                (PreEscaped(figure.svg()?))
-                @if let Some((name, svg)) = figure.other_svg()? { div.other hidden data-name=(name) { (PreEscaped(svg)) } }
+                (PreEscaped(styles.compact(&figure.svg()?)))
+                @if let Some((name, svg)) = figure.other_svg()? { div.other hidden data-name=(name) { (PreEscaped(styles.compact(&svg))) } }
                 @if let Some(data) = figure.data() { script.jobs type="application/json" { (PreEscaped(in_script(&data))) } }
+                (numbered(section, stem))
             }
         },
         Block::Picture { stem, title, png, comparison, images } => html! {
             figure.sheet id={ (section) "-" (stem) } {
                 img alt=(title) src={ "data:image/png;base64," (STANDARD.encode(png)) };
                 script.images type="application/json" { (PreEscaped(in_script(&json(&(comparison, images))))) }
+                (numbered(section, stem))
             }
         },
-        Block::Table { table, .. } => table_markup(table),
+        Block::Table { table, .. } => table_markup(table, is_first_table),
     })
+}
+
+/// The number of a figure, which the style sheet counts, and a link to it.
+fn numbered(section: &str, stem: &str) -> Markup {
+    html! { figcaption { a href={ "#" (section) "-" (stem) } {} } }
 }
 
 /// Data for the page's script.
@@ -295,22 +383,29 @@ fn in_script(json: &str) -> String {
     json.replace('<', "\\u003c")
 }
 
-fn table_markup(table: &Table) -> Markup {
+/// A table, without columns in which no row has a value. The first of a section is open if it is short.
+fn table_markup(table: &Table, is_first: bool) -> Markup {
     // A column is set as text if one of its cells is long.
     let mut is_text = vec![false; table.heads().count()];
     for row in table.rows() {
         is_text.iter_mut().zip(&row).for_each(|(is_text, cell)| *is_text |= cell.len() > LONGEST_CELL);
     }
+    let columns: Vec<(usize, &str)> = table.heads().enumerate().filter(|(column, _)| !table.is_blank(*column)).collect();
     html! {
-        details.wide open[table.len() <= OPEN_ROWS] {
+        details.wide open[is_first && table.len() <= OPEN_ROWS] {
             summary { (table.title) }
             table {
-                thead { tr { @for (head, is_text) in table.heads().zip(&is_text) { th.text[*is_text] { (head) } } } }
+                thead { tr { @for (at, head) in &columns { th.text[is_text[*at]] { (head) } } } }
                 tbody {
-                    @for row in table.rows() {
+                    @for (number, row) in table.rows().enumerate() {
+                        @let bars: Vec<Option<[f64; 2]>> = table.bars(number).collect();
                         tr {
-                            @for ((cell, column), is_text) in row.iter().zip(table.heads()).zip(&is_text) {
-                                td.text[*is_text] data-verdict=[(column == "verdict").then_some(cell)] { (broken(cell, *is_text)) }
+                            @for (at, head) in &columns {
+                                @let (cell, is_text) = (&row[*at], is_text[*at]);
+                                td.text[is_text] data-verdict=[(*head == "verdict").then_some(cell)] {
+                                    (broken(cell, is_text))
+                                    @if let Some([low, high]) = bars[*at] { i style={ "--a:" (format!("{low:.2}")) ";--b:" (format!("{high:.2}")) } {} }
+                                }
                             }
                         }
                     }
@@ -368,6 +463,11 @@ fn provenance(section: &Section, run: &RunFile) -> Markup {
         ),
     ];
     html! {
+        @if !section.files.is_empty() {
+            p.files {
+            "Raw data: " @for (place, file) in section.files.iter().enumerate() { @if place > 0 { ", " } a href=(file) { (file) } } "."
+            }
+        }
         details open[false] {
             summary { "Command and machine" }
             pre { (command) }

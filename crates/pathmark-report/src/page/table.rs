@@ -4,6 +4,7 @@
 use super::block::Block;
 use crate::error::Result;
 use crate::estimated::Estimated;
+use crate::words::unusual_level;
 use crate::{csv_file, plot};
 use std::path::Path;
 
@@ -44,7 +45,7 @@ impl TableCell {
             }
             Self::Estimated(Some(Estimated { value, interval: Some(interval), .. }), digits) => {
                 let [value, low, high] = [*value, interval.low, interval.high].map(|number| digits.show(number));
-                format!("{value}, {low} to {high} ({:.1} %)", interval.percent())
+                format!("{value}, {low} to {high}{}", unusual_level(&interval))
             }
         }
     }
@@ -71,6 +72,19 @@ struct Column {
 }
 
 impl Column {
+    fn bar(&self, row: usize) -> Option<[f64; 2]> {
+        let ends = |entry: &TableCell| match entry {
+            TableCell::Estimated(Some(told), _) => told.bar().filter(|(low, high)| low.is_finite() && high.is_finite()),
+            _ => None,
+        };
+        let (low, high) = ends(&self.entries[row])?;
+        let all: Vec<(f64, f64)> = self.entries.iter().filter_map(ends).collect();
+        let least = all.iter().map(|(low, _)| *low).fold(f64::INFINITY, f64::min);
+        let most = all.iter().map(|(_, high)| *high).fold(f64::NEG_INFINITY, f64::max);
+        let place = |value: f64| (value - least) / (most - least);
+        (all.len() > 1 && most > least).then(|| [place(low), place(high)])
+    }
+
     /// Its heads in a CSV file; a value with an interval has four.
     fn heads(&self) -> Vec<String> {
         let head = &self.head;
@@ -115,6 +129,18 @@ impl Table {
     /// Its rows, as the page shows them.
     pub fn rows(&self) -> impl Iterator<Item = Vec<String>> {
         (0..self.length).map(|row| self.columns.iter().map(|column| column.entries[row].shown()).collect())
+    }
+
+    /// For each cell of a row the place of its interval, from 0 to 1 between the ends of the column's intervals; `None`
+    /// without several intervals to compare.
+    pub(crate) fn bars(&self, row: usize) -> impl Iterator<Item = Option<[f64; 2]>> {
+        self.columns.iter().map(move |column| column.bar(row))
+    }
+
+    /// Whether a column has no value in any row.
+    pub(crate) fn is_blank(&self, column: usize) -> bool {
+        let is_nothing = |entry: &TableCell| matches!(entry.shown().as_str(), "" | NONE);
+        self.columns[column].entries.iter().all(is_nothing)
     }
 
     pub(crate) fn save(&self, path: &Path) -> Result<()> {

@@ -46,6 +46,8 @@ pub struct JobBar {
     pub stop_s: f64,
     /// The value that its colour shows, in the unit of the chart's label.
     pub value: f64,
+    /// Its piece of the picture: first column, first row, and the ones after the last.
+    pub area: [u32; 4],
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -56,6 +58,8 @@ pub struct Schedule {
     pub workers: usize,
     /// Seconds from start to end.
     pub makespan_s: f64,
+    /// Columns and rows of the picture.
+    pub size: [u32; 2],
     pub jobs: Vec<JobBar>,
 }
 
@@ -133,8 +137,8 @@ fn number_lanes(drawing: &mut Drawing, shown: &[usize], left: f64, top: f64, lan
 /// With this many jobs in each schedule, a page is still read in a second.
 const MOST_JOBS: usize = 2000;
 
-/// A job in the page's data: its number, its worker, and start and stop in microseconds.
-type JobData = (usize, usize, f64, f64);
+/// A job in the page's data: its number, its worker, start and stop in microseconds, and its piece of the picture.
+type JobData = (usize, usize, f64, f64, [u32; 4]);
 
 /// A schedule in the page's data.
 #[derive(Serialize)]
@@ -142,6 +146,7 @@ struct ScheduleData {
     title: String,
     workers: usize,
     end: f64,
+    size: [u32; 2],
     jobs: Vec<JobData>,
 }
 
@@ -149,15 +154,15 @@ impl ScheduleData {
     fn of(schedule: &Schedule) -> Self {
         // Rounding to a nanosecond loses nothing: no clock resolves less.
         let microseconds = |seconds: f64| (seconds * 1e9).round() / 1e3;
-        let job = |job: &JobBar| (job.job, job.worker, microseconds(job.start_s), microseconds(job.stop_s));
+        let job = |job: &JobBar| (job.job, job.worker, microseconds(job.start_s), microseconds(job.stop_s), job.area);
         let jobs: Vec<JobData> = schedule.jobs.iter().filter(|job| schedule.holds(job)).map(job).collect();
         let (title, workers, end) = (schedule.title.clone(), schedule.workers, microseconds(schedule.makespan_s));
         if jobs.len() <= MOST_JOBS {
-            return Self { title, workers, end, jobs };
+            return Self { title, workers, end, size: schedule.size, jobs };
         }
         let title =
             format!("{title}; its {} jobs are too many for a page, and pathmark inspect jobs draws them", jobs.len());
-        Self { title, workers: 0, end: 0.0, jobs: Vec::new() }
+        Self { title, workers: 0, end: 0.0, size: [0; 2], jobs: Vec::new() }
     }
 }
 
