@@ -190,7 +190,7 @@ fn generality(found: &[Priced<'_>], stem: &'static str) -> Option<[Block; 2]> {
     } else {
         format!("These cost more than the noise: {}", beyond.join("; "))
     };
-    let percent = Estimated::from(ratio.estimate()).times(100.0);
+    let percent = Estimated::from(ratio).times(100.0);
     let (low, high) = percent.bar().unwrap_or_default();
     let text = format!(
         "An effect that the scene does not use costs up to {:.1} % ({:.1} to {:.1}; {dearest}) of the time if it is compiled in. An absent one costs nothing: it is not compiled in.",

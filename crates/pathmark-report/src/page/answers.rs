@@ -90,14 +90,17 @@ pub(super) fn is_any(sections: &[Section]) -> bool {
     !answers(sections).is_empty()
 }
 
+/// The figure of an answer, if its section has it.
+fn figure(answer: &Answer<'_>, styles: &mut Styles) -> Result<Option<String>> {
+    let own = answer.section.blocks.iter().find_map(|block| match block {
+        Block::Figure { stem, figure } if *stem == answer.stem => Some(figure),
+        _ => None,
+    });
+    let Some(own) = own else { return Ok(None) };
+    Ok(Some(styles.thumbnail(&own.svg()?)))
+}
+
 pub(super) fn markup(sections: &[Section], styles: &mut Styles) -> Result<Markup> {
-    let figure = |answer: &Answer<'_>, styles: &mut Styles| {
-        let own = answer.section.blocks.iter().find_map(|block| match block {
-            Block::Figure { stem, figure } if *stem == answer.stem => Some(figure),
-            _ => None,
-        });
-        own.map(|figure| Ok(styles.thumbnail(&figure.svg()?))).transpose()
-    };
     let answers = answers(sections);
     let figures = answers.iter().map(|answer| figure(answer, styles)).collect::<Result<Vec<Option<String>>>>()?;
     Ok(html! {
@@ -105,7 +108,7 @@ pub(super) fn markup(sections: &[Section], styles: &mut Styles) -> Result<Markup
             section.answers id=(ANCHOR) {
                 @for (answer, figure) in answers.iter().zip(&figures) {
                     article {
-                        h2 { (answer.heading) " " span.badge.(answer.trust.class()) { (answer.trust.badge()) } }
+                        h2 { (answer.heading) " " span class={ "badge " (answer.trust.class()) } { (answer.trust.badge()) } }
                         p { (prose(answer.text)) " " a href={ "#" (answer.section.name) } { "More" } }
                         @if let Some(figure) = figure {
                             a.thumbnail href={ "#" (answer.section.name) "-" (answer.stem) } aria-label={ "The figure of: " (answer.heading) } { (PreEscaped(figure)) }
