@@ -8,6 +8,7 @@ pub(crate) mod bursts;
 mod compact;
 pub(crate) mod doctor;
 pub(crate) mod guards;
+mod photo;
 pub(crate) mod table;
 
 use crate::error::Result;
@@ -17,8 +18,6 @@ use crate::results::Results;
 use crate::prelude::joined;
 use crate::words::counted;
 use again::Again;
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use block::Block;
 use compact::Styles;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -359,7 +358,7 @@ fn part(section: &str, block: &Block, is_first_table: bool, styles: &mut Styles)
         },
         Block::Picture { stem, title, png, comparison, images } => html! {
             figure.sheet id={ (section) "-" (stem) } {
-                img alt=(title) src={ "data:image/png;base64," (STANDARD.encode(png)) };
+                img alt=(title) src=(photo::source(png)?);
                 script.images type="application/json" { (PreEscaped(in_script(&json(&(comparison, images))))) }
                 (numbered(section, stem))
             }
