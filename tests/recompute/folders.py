@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+"""Counts the rows of the folders in the table of results/README.md, and compares them with what it says.
+
+usage: folders.py [README.md]
+
+A line of the table begins with a folder in backquotes; `*/` stands for the experiments beside the README. Its columns are
+folder, command, rows, rows in doubt and commit. A difference ends with code 1.
+"""
+
+import csv
+import re
+import sys
+import tomllib
+from pathlib import Path
+
+csv.field_size_limit(1 << 24)
+
+# Warnings that put a row's time in doubt (`pathmark list warnings`).
+DOUBTS = {"foreign-load", "steal", "slowed", "drift", "too-short"}
+
+
+def counted(folder, pattern):
+    """Rows, rows in doubt, and the commits of the sweeps of a folder."""
+    rows, doubted, commits = 0, 0, set()
+    for path in sorted(folder.glob(pattern)):
+        with path.open(newline="") as file:
+            warnings = [{word.split("(")[0] for word in row["warnings"].split(";")} for row in csv.DictReader(file)]
+        run = [own for own in warnings if not own & {"no-program", "no-device"}]
+        rows += len(run)
+        doubted += sum(bool(own & DOUBTS) for own in run)
+        commits.add(tomllib.loads((path.parent / "machine.toml").read_text())["machine"]["commit"])
+    return rows, doubted, commits
+
+
+def main(readme):
+    differences, lines = [], 0
+    for line in readme.read_text().splitlines():
+        found = re.match(r"\| `([^`]+)/` \| `[^`]+` \| (\d+) \| (\d+) \| (\w+) \|$", line)
+        if not found:
+            continue
+        lines += 1
+        name, rows, doubted, commit = found[1], int(found[2]), int(found[3]), found[4]
+        folder = readme.parent if name == "*" else readme.parent / name
+        own = counted(folder, "*/records.csv") if any(folder.glob("*/records.csv")) else counted(folder, "records.csv")
+        if own != (rows, doubted, {commit}):
+            differences.append(f"{name}: {own}, and the table says {(rows, doubted, {commit})}")
+    print(f"{lines} folders counted")
+    print("\n".join(differences) if differences else "all agree")
+    return 1 if differences or not lines else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parents[2] / "results/README.md")))
