@@ -234,4 +234,23 @@ mod tests {
         assert_eq!(lines[1], format!("true,{third},{third},0.25,0.5,0.96875"));
         assert_eq!(lines[2..], ["true,2,2,,,", "false,,,,,"]);
     }
+
+    /// Intervals 0 to 1 and 2 to 4 lie at the first quarter and the second half of their column.
+    #[test]
+    fn intervals_have_places_in_their_column_and_blank_columns_are_known() {
+        let told = |low: f64, high: f64| {
+            Estimated::of(0.5 * (low + high), Some(Interval { low, high, level: 0.95 }))
+        };
+        let block = Block::table("table", "A table", [told(0.0, 1.0), told(2.0, 4.0)])
+            .column("nothing", |_| String::new())
+            .number("missing", Decimals(1), |_| None)
+            .estimated("ratio", Decimals(1), |told| *told)
+            .end();
+        let Block::Table { table, .. } = &block else { panic!("a table") };
+        assert_eq!([0, 1, 2].map(|column| table.is_blank(column)), [true, true, false]);
+        let bars = |row| table.bars(row).collect::<Vec<_>>();
+        assert_eq!(bars(0), [None, None, Some([0.0, 0.25])]);
+        assert_eq!(bars(1), [None, None, Some([0.5, 1.0])]);
+        assert_eq!(table.rows().next().unwrap()[2], "0.5, 0.0 to 1.0");
+    }
 }
