@@ -12,7 +12,7 @@ use crate::interval::{Estimate, Interval, is_level};
 use crate::mean::{Moments, t_quantile};
 use crate::quantile::median;
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 use std::collections::BTreeMap;
 
 /// The variance of a median of n normal values is this over n.
@@ -56,7 +56,7 @@ pub fn paired_ratio(processes: &[Vec<f64>], level: f64) -> Option<PairedRatio> {
     let interval = Interval::between(libm::exp(value - half_width), libm::exp(value + half_width), level)?;
     let ratio = Estimate { value: libm::exp(value), interval };
     let pairs = processes.iter().map(Vec::len).sum();
-    Some(PairedRatio { ratio, pairs, processes: values.len(), spread: spread_of(&logarithms)? })
+    Some(PairedRatio { ratio, pairs, processes: values.len(), spread: spread_of(&logarithms, 1.0)? })
 }
 
 /// The pairs of each process, from ratios with the numbers of their processes.
@@ -83,7 +83,19 @@ pub fn p_of_less(processes: &[Vec<f64>]) -> f64 {
 
 /// Returns the spread of ratios within and between processes; `None` below two processes.
 pub fn spread(processes: &[Vec<f64>]) -> Option<Spread> {
-    spread_of(&logarithms(processes)?)
+    spread_of(&logarithms(processes)?, 1.0)
+}
+
+/// Confidence that the spread between processes is no larger than a cautious plan takes it for.
+const CAUTIOUS: f64 = 0.8;
+
+/// The spread with which few processes promise a precision: that between them is taken at the upper end of its one-sided
+/// interval of 80 %, because a few are often alike by chance (R. H. Browne, "On the use of a pilot sample for sample size
+/// determination", Statistics in Medicine 14, 1995).
+pub fn cautious_spread(processes: &[Vec<f64>]) -> Option<Spread> {
+    let degrees = processes.len().checked_sub(1).filter(|degrees| *degrees > 0)? as f64;
+    let least = ChiSquared::new(degrees).ok()?.inverse_cdf(1.0 - CAUTIOUS);
+    spread_of(&logarithms(processes)?, degrees / least)
 }
 
 fn logarithms(processes: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
@@ -101,12 +113,13 @@ fn deviation(values: &[f64]) -> Option<f64> {
     Some(OF_NORMAL * median(&distances)?)
 }
 
-fn spread_of(logarithms: &[Vec<f64>]) -> Option<Spread> {
+/// The spread, with the variance of processes multiplied by a factor of caution.
+fn spread_of(logarithms: &[Vec<f64>], caution: f64) -> Option<Spread> {
     let within: Vec<f64> = logarithms.iter().filter(|own| own.len() > 1).filter_map(|own| deviation(own)).collect();
     let within = median(&within).unwrap_or(0.0);
     let values = logarithms.iter().map(|own| median(own)).collect::<Option<Vec<f64>>>()?;
     let pairs = logarithms.len() as f64 / logarithms.iter().map(|own| 1.0 / own.len() as f64).sum::<f64>();
-    let all = Moments::of(&values).sample_variance()?;
+    let all = caution * Moments::of(&values).sample_variance()?;
     Some(Spread { within, between: (all - OF_MEDIAN * within * within / pairs).max(0.0).sqrt() })
 }
 
@@ -191,6 +204,16 @@ mod tests {
     use super::*;
     use rand::Rng;
     use rand_pcg::Pcg64Dxsm;
+
+    /// With two degrees of freedom, a fifth of chi-squared lies below -2 ln .8.
+    #[test]
+    fn a_cautious_spread_is_the_upper_end_of_its_interval() {
+        let processes = [-1.0_f64, 0.0, 1.0].map(|log| vec![libm::exp(0.01 * log)]);
+        let [plain, cautious] = [spread(&processes), cautious_spread(&processes)].map(|spread| spread.unwrap().between);
+        assert!((plain - 0.01).abs() < 1e-12);
+        assert!((cautious / plain - (2.0 / (-2.0 * 0.8_f64.ln())).sqrt()).abs() < 1e-6, "{cautious}");
+        assert_eq!(cautious_spread(&processes[..1]), None);
+    }
 
     /// A machine as it disturbs runs: its speed drifts, bursts of other programs slow some runs, a host takes a processor
     /// away for a while, and each process has a layout that favours one side.

@@ -4,7 +4,7 @@
 //! programs has to live here.
 
 use super::process_group::answer;
-use crate::analysis::adjacent_pairs::{Costs, FEWEST_PROCESSES, PowerPlan, paired_ratio};
+use crate::analysis::adjacent_pairs::{Costs, FEWEST_PROCESSES, PowerPlan, cautious_spread, paired_ratio};
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use crate::input::read_text;
@@ -129,7 +129,7 @@ impl Noise {
             ratio: found.ratio.value,
             low: interval.low,
             high: interval.high,
-            in_ten_minutes: found.spread.narrowest(COMPARISON_S, LEVEL, Costs { pair_s, process_s })?,
+            in_ten_minutes: cautious_spread(&ratios)?.narrowest(COMPARISON_S, LEVEL, Costs { pair_s, process_s })?,
         })
     }
 
