@@ -25,11 +25,11 @@ struct OwnThreads {
 
 impl Strategy for OwnThreads {
     fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
-        let (next, panics) = (Arc::new(AtomicUsize::new(0)), Arc::new(Panics::default()));
+        let (counter, panics) = (Arc::new(AtomicUsize::new(0)), Arc::new(Panics::default()));
         let workers = self.threads.min(jobs);
         let (mut started, mut refused) = (Vec::new(), None);
         for worker in 0..workers {
-            let (job, next, panics) = (Arc::clone(&job), Arc::clone(&next), Arc::clone(&panics));
+            let (job, next, panics) = (Arc::clone(&job), Arc::clone(&counter), Arc::clone(&panics));
             let body = move || {
                 loop {
                     let index = next.fetch_add(1, Ordering::Relaxed);
@@ -44,7 +44,7 @@ impl Strategy for OwnThreads {
                 Ok(thread) => started.push(thread),
                 Err(source) => {
                     // The system refused a thread: the others find no more jobs, and the caller hears of it.
-                    next.store(jobs, Ordering::Relaxed);
+                    counter.store(jobs, Ordering::Relaxed);
                     refused = Some(StrategyError::Spawn { worker: worker + 1, workers, source });
                     break;
                 }

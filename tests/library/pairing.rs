@@ -85,6 +85,7 @@ const EXCEPTIONS: &[(&str, &str, &[&str])] = &[
         "CPU times of a pair that `paired` made; forecasts of the same jobs",
         &["own / serial", "(a / b - 1.0)"],
     ),
+    ("page/table.rs", "lengths of bars in a column", &["(value - least) / (most - least)"]),
     (
         "rank_forecasts.rs",
         "costs of messages; a prediction over the time of the same run; forecasts of the same jobs",

@@ -35,7 +35,7 @@ def counted(folder, pattern):
 def main(readme):
     differences, lines = [], 0
     for line in readme.read_text().splitlines():
-        found = re.match(r"\| `([^`]+)/` \| `[^`]+` \| (\d+) \| (\d+) \| (\w+) \|$", line)
+        found = re.match(r"\| `([^`]+)/` \| [^|]+ \| (\d+) \| (\d+) \| (\w+) \|$", line)
         if not found:
             continue
         lines += 1

@@ -88,7 +88,7 @@ pub(super) fn results(figures: &[&str], more: &str, rows: Vec<Record>) -> crate:
 /// The text of all blocks.
 pub(super) fn words(blocks: &[Block]) -> String {
     let of = |block: &Block| match block {
-        Block::Finding(text) | Block::Notice(text) => text.clone(),
+        Block::Finding(text) | Block::Answer { text, .. } | Block::Notice(text) => text.clone(),
         Block::Figure { figure, .. } => figure.svg().unwrap(),
         Block::Picture { title, .. } => title.clone(),
         Block::Table { table, .. } => table.rows().flatten().collect::<Vec<String>>().join("\n"),

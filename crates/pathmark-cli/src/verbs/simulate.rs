@@ -349,7 +349,7 @@ fn show(blocks: &[Block]) -> Result<()> {
                 let heads = table.heads().map(str::to_string).collect();
                 print(&format!("{}\n{}", table.title, aligned(heads, table.rows(), true)))?;
             }
-            Block::Figure { .. } | Block::Picture { .. } => {}
+            Block::Answer { .. } | Block::Figure { .. } | Block::Picture { .. } => {}
         }
     }
     Ok(())

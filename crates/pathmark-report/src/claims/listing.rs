@@ -362,8 +362,8 @@ pub(crate) fn blocks(answers: &[Answer<'_>]) -> Vec<Block> {
     let rows = counts(answers).into_iter().map(|(report, counts)| {
         std::iter::once(report).chain(counts.iter().map(ToString::to_string)).collect::<Vec<String>>()
     });
-    let counted = Table::of_text("Verdicts", &heads, &rows.collect::<Vec<_>>());
-    let mut blocks = vec![Block::Table { stem: "verdicts", table: counted }];
+    let verdicts = Table::of_text("Verdicts", &heads, &rows.collect::<Vec<_>>());
+    let mut blocks = vec![Block::Table { stem: "verdicts", table: verdicts }];
     let (unanswered, answered): (Vec<&Answer<'_>>, Vec<&Answer<'_>>) =
         answers.iter().partition(|answer| answer.verdict == Verdict::NotAnswered);
     for (stem, letter) in [("claims-a", "A"), ("claims-b", "B"), ("claims-c", "C"), ("claims-d", "D")] {

@@ -31,7 +31,7 @@ struct Answer<'a> {
     trust: Trust,
 }
 
-/// What a reader may rely on.
+/// How far a reader may rely on an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Trust {
     Sure,
@@ -98,6 +98,11 @@ fn figure(answer: &Answer<'_>, styles: &mut Styles) -> Result<Option<String>> {
     });
     let Some(own) = own else { return Ok(None) };
     Ok(Some(styles.thumbnail(&own.svg()?)))
+}
+
+/// Whether a section is among the answers of a page.
+pub(super) fn has(sections: &[Section], section: &Section) -> bool {
+    answers(sections).iter().any(|answer| std::ptr::eq(answer.section, section))
 }
 
 pub(super) fn markup(sections: &[Section], styles: &mut Styles) -> Result<Markup> {

@@ -164,7 +164,7 @@ mod tests {
         let cells = cells(&section);
         assert_eq!(cells[0], ["half", "20 us", "1", "2", "0.50, no interval", "10", "0.50, no interval", "0.50", "0"]);
         assert_eq!(cells[1][..5], ["rayon", "20 us", "2", "4", "-"]);
-        assert_eq!(cells[2][4], "2.00, 0.36 to 11.19 (95.0 %)");
+        assert_eq!(cells[2][4], "2.00, 0.36 to 11.19");
         let told = section.blocks[0].as_finding().unwrap();
         assert_eq!(told, "After gaps of 20 us, no strategy wakes faster than rayon beyond the noise.");
     }

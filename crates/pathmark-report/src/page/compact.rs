@@ -112,13 +112,16 @@ mod tests {
     fn equal_styles_share_a_class_and_greys_become_variables() {
         let mut styles = Styles::default();
         let line = "<polyline fill=\"none\" stroke=\"#E1E1E1\" stroke-width=\"2\" points=\"1,2 3,4 \"/>";
-        let text = "<text x=\"5\" dy=\"0.5ex\" font-size=\"23\" fill=\"#222222\">\na < b\n</text>".replace(" < ", " &lt; ");
+        let text =
+            "<text x=\"5\" dy=\"0.5ex\" font-size=\"23\" fill=\"#222222\">\na < b\n</text>".replace(" < ", " &lt; ");
         let svg = format!("<svg width=\"9\" role=\"img\">\n<title>T</title>\n{line}\n{line}\n{text}\n</svg>\n");
         let compact = styles.compact(&svg);
         let line = "<polyline points=\"1,2 3,4\" class=\"k0\"/>";
         assert_eq!(
             compact,
-            format!("<svg width=\"9\" role=\"img\"><title>T</title>{line}{line}<text x=\"5\" dy=\"0.5ex\" class=\"k1\">a &lt; b</text></svg>")
+            format!(
+                "<svg width=\"9\" role=\"img\"><title>T</title>{line}{line}<text x=\"5\" dy=\"0.5ex\" class=\"k1\">a &lt; b</text></svg>"
+            )
         );
         let sheet = styles.sheet();
         assert!(sheet.contains(".k0{fill:none;stroke:var(--f-grid);stroke-width:2px}"), "{sheet}");
@@ -131,7 +134,10 @@ mod tests {
         let note = "<circle class=\"note\" cx=\"1\" fill=\"none\" data-of=\"x\"><title>v</title></circle>";
         let svg = format!("<svg width=\"1\"><g class=\"series\" data-series=\"a\"></g>{note}\n</svg>");
         let compact = styles.compact(&svg);
-        assert!(compact.contains("<circle cx=\"1\" data-of=\"x\" class=\"note k0\"><title>v</title></circle>"), "{compact}");
+        assert!(
+            compact.contains("<circle cx=\"1\" data-of=\"x\" class=\"note k0\"><title>v</title></circle>"),
+            "{compact}"
+        );
         assert!(compact.contains("<g data-series=\"a\" class=\"series\"></g>"), "{compact}");
         assert_eq!(styles.thumbnail(&svg), "<svg width=\"1\"><g data-series=\"a\" class=\"series\"></g></svg>");
     }

@@ -14,8 +14,8 @@ pub(crate) mod table;
 use crate::error::Result;
 use crate::experiment::{Chapter, Definition, RunFile};
 use crate::measure::{LeftOut, Record, TimingConcerns};
-use crate::results::Results;
 use crate::prelude::joined;
+use crate::results::Results;
 use crate::words::counted;
 use again::Again;
 use block::Block;
@@ -176,7 +176,10 @@ fn about(sections: &[Section]) -> Markup {
         [day] => (*day).to_string(),
         [first, .., last] => format!("{first} to {last}"),
     };
-    let commits = few(commits.into_iter().filter(|commit| !commit.is_empty()).map(|own| format!("commit {own}")).collect(), "commits");
+    let commits = few(
+        commits.into_iter().filter(|commit| !commit.is_empty()).map(|own| format!("commit {own}")).collect(),
+        "commits",
+    );
     let facts = joined([when, few(machines.into_iter().collect(), "machines"), commits]);
     html! {
         p.facts { (facts) }
@@ -238,8 +241,9 @@ const SOURCES_TITLE: &str = "Machine, method, raw data";
 fn in_short(sections: &[Section], chapters: &[(Chapter, Vec<&Section>)]) -> Markup {
     let claims = sections.iter().filter(|section| section.chapter.is_none());
     let ordered = chapters.iter().flat_map(|(_, sections)| sections.iter().copied()).chain(claims);
+    let others = ordered.filter(|section| !answers::has(sections, section));
     let found: Vec<(&Section, &str)> =
-        ordered.filter_map(|section| Some((section, section.in_short.as_deref()?))).collect();
+        others.filter_map(|section| Some((section, section.in_short.as_deref()?))).collect();
     html! {
         @if !found.is_empty() {
             section.in-short id=(IN_SHORT) {
@@ -389,7 +393,8 @@ fn table_markup(table: &Table, is_first: bool) -> Markup {
     for row in table.rows() {
         is_text.iter_mut().zip(&row).for_each(|(is_text, cell)| *is_text |= cell.len() > LONGEST_CELL);
     }
-    let columns: Vec<(usize, &str)> = table.heads().enumerate().filter(|(column, _)| !table.is_blank(*column)).collect();
+    let columns: Vec<(usize, &str)> =
+        table.heads().enumerate().filter(|(column, _)| !table.is_blank(*column)).collect();
     html! {
         details.wide open[is_first && table.len() <= OPEN_ROWS] {
             summary { (table.title) }

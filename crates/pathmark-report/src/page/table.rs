@@ -238,9 +238,7 @@ mod tests {
     /// Intervals 0 to 1 and 2 to 4 lie at the first quarter and the second half of their column.
     #[test]
     fn intervals_have_places_in_their_column_and_blank_columns_are_known() {
-        let told = |low: f64, high: f64| {
-            Estimated::of(0.5 * (low + high), Some(Interval { low, high, level: 0.95 }))
-        };
+        let told = |low: f64, high: f64| Estimated::of(0.5 * (low + high), Some(Interval { low, high, level: 0.95 }));
         let block = Block::table("table", "A table", [told(0.0, 1.0), told(2.0, 4.0)])
             .column("nothing", |_| String::new())
             .number("missing", Decimals(1), |_| None)

@@ -9,7 +9,14 @@ fn schedule(workers: usize, jobs: usize) -> Schedule {
     let rounds = jobs.div_ceil(workers.max(1)).max(1) as f64;
     let job = |i: usize| {
         let start_s = (i / workers) as f64 / rounds;
-        JobBar { job: i, worker: i % workers, start_s, stop_s: start_s + 0.9 / rounds, value: (i % 7) as f64, area: [0, 0, 8, 8] }
+        JobBar {
+            job: i,
+            worker: i % workers,
+            start_s,
+            stop_s: start_s + 0.9 / rounds,
+            value: (i % 7) as f64,
+            area: [0, 0, 8, 8],
+        }
     };
     let title = format!("strategy, {workers} threads: 1.05 s, utilisation 86 %");
     Schedule { title, workers, makespan_s: 1.05, size: [8, 8], jobs: (0..jobs).map(job).collect() }
