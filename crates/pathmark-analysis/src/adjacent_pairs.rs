@@ -211,7 +211,7 @@ mod tests {
         let processes = [-1.0_f64, 0.0, 1.0].map(|log| vec![libm::exp(0.01 * log)]);
         let [plain, cautious] = [spread(&processes), cautious_spread(&processes)].map(|spread| spread.unwrap().between);
         assert!((plain - 0.01).abs() < 1e-12);
-        assert!((cautious / plain - (2.0 / (-2.0 * 0.8_f64.ln())).sqrt()).abs() < 1e-6, "{cautious}");
+        assert!((cautious / plain - (2.0 / (-2.0 * libm::log(0.8))).sqrt()).abs() < 1e-6, "{cautious}");
         assert_eq!(cautious_spread(&processes[..1]), None);
     }
 

@@ -117,7 +117,7 @@ impl Speedups<'_> {
         let per_processor = |speedup: f64, threads: usize| speedup / self.results.weight_in_use(threads);
         let strategies: BTreeSet<&str> = self.all.iter().map(|(schedule, _)| schedule.name.as_str()).collect();
         // Schedules with a thread for each job have no place on an axis of threads.
-        let has_axis = self.all.iter().any(|(schedule, _)| !self.has_a_thread_per_job(schedule));
+        let has_axis = !self.all.iter().all(|(schedule, _)| self.has_a_thread_per_job(schedule)) || self.all.is_empty();
         if strategies.len() <= MOST_LINES && has_axis {
             let (speedup, efficiency) = (self.speedup_chart(), self.efficiency_chart(&per_processor));
             return vec![Block::figure("speedup", speedup), Block::figure("efficiency", efficiency)];

@@ -45,7 +45,7 @@ impl TableCell {
             }
             Self::Estimated(Some(Estimated { value, interval: Some(interval), .. }), digits) => {
                 let [value, low, high] = [*value, interval.low, interval.high].map(|number| digits.show(number));
-                format!("{value}, {low} to {high}{}", unusual_level(&interval))
+                format!("{value}, {low} to {high}{}", unusual_level(interval))
             }
         }
     }
