@@ -139,7 +139,7 @@
       const panes = document.createElement("div");
       panes.className = "stage";
       replay.append(controls, panes);
-      details.append(replay);
+      canvas.before(replay);
       const slider = document.createElement("input");
       Object.assign(slider, { type: "range", min: 0, max: 1000, value: 1000 });
       slider.setAttribute("aria-label", "Time in the schedules");

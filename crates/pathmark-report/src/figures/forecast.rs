@@ -46,6 +46,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(blocks)
 }
 
+/// Upper over lower end of an interval with which a forecast counts as known.
+const NARROW: f64 = 1.25;
+
 /// A finding about report A's "1/h times faster".
 fn claim(rows: &[Forecast], costs: &[f64]) -> Option<[Block; 2]> {
     let largest = rows.iter().map(|row| row.workers).max()?;
@@ -61,7 +64,8 @@ fn claim(rows: &[Forecast], costs: &[f64]) -> Option<[Block; 2]> {
         best.strategy,
         told(best),
     );
-    let answer = Block::Answer { text, stem: "forecast-speedup", is_told: true };
+    let is_narrow = |row: &Forecast| Estimated::from(row.speedup).bar().is_some_and(|(low, high)| high <= NARROW * low);
+    let answer = Block::Answer { text, stem: "forecast-speedup", is_told: is_narrow(all) && is_narrow(best) };
     let finding = Block::finding(format!(
         "Simulated, with intervals of {:.0} % confidence: {THREAD_PER_ROW} (a thread for each of {} rows) would be {} times as fast as serial on 2 cores, {} times on 16 and {} times on {largest}, not {largest}: the longest row takes {:.2} times the mean ({:.2} times the \
          median), which alone allows no more than {:.0}, and threads are started one after the other. The best of all schedules on {largest} cores, {}, reaches {}. {}",
