@@ -442,19 +442,29 @@ fn speedup_rows() -> Vec<Record> {
 }
 
 #[test]
-fn the_page_begins_with_the_findings_that_experiments_name() {
+fn the_page_begins_with_answers_and_with_the_findings_that_experiments_name() {
     let out = folder_of(&["speedup"], "chapter = \"scheduling\"\nin-short = 1", speedup_rows());
     let page = super::write(&Lab::built_in(), out.path()).unwrap();
     let html = std::fs::read_to_string(page).unwrap();
     let place = |text: &str| html.find(text).unwrap_or_else(|| panic!("the page lacks {text}"));
-    let (start, short, chapter) = (place("<main"), place("id=\"in-short\""), place("id=\"chapter-scheduling\""));
+    let (start, short, chapter) = (place("<main"), place("id=\"answers\""), place("id=\"chapter-scheduling\""));
     assert!(start < short && short < chapter && chapter < place("id=\"an-experiment\""));
-    assert!(html[short..chapter].contains("2.000 times serial"), "{}", &html[short..chapter]);
+    assert!(
+        html[short..chapter].contains("is 2.00 (2.00 to 2.00, 96.8 %) times as fast as serial"),
+        "{}",
+        &html[short..chapter]
+    );
     assert!(html[short..chapter].contains("href=\"#an-experiment\""));
-    // Chapters without a section are left out.
-    assert!(!html.contains("chapter-effects"));
-    // If `in-short` names a finding that does not exist, the page is written without the section "In short".
-    let out = folder_of(&["speedup"], "in-short = 99", speedup_rows());
+    // Chapters without a section are left out, and a finding that is an answer is told once.
+    assert!(!html.contains("chapter-effects") && !html.contains("id=\"in-short\""));
+    // Figures without an answer leave the findings that `in-short` names.
+    let out = folder_of(&["clock"], "in-short = 1", speedup_rows());
+    let html = std::fs::read_to_string(super::write(&Lab::built_in(), out.path()).unwrap()).unwrap();
+    assert!(
+        !html.contains("id=\"answers\"") && html.contains("id=\"in-short\"") && html.contains("Timed with clock()")
+    );
+    // If `in-short` names a finding that does not exist, the page is written without that section.
+    let out = folder_of(&["clock"], "in-short = 99", speedup_rows());
     let html = std::fs::read_to_string(super::write(&Lab::built_in(), out.path()).unwrap()).unwrap();
     assert!(!html.contains("id=\"in-short\"") && html.contains("id=\"chapter-others\""));
 }

@@ -47,7 +47,7 @@ pub(super) fn with_level(interval: &Interval, digits: usize) -> String {
 
 /// A value with its interval in brackets.
 pub(super) fn with_interval(value: f64, interval: &Interval, digits: usize) -> String {
-    format!("{value:.digits$} ({})", with_level(interval, digits))
+    format!("{value:.digits$} ({})", with_level(interval, digits).replace(" (", ", ").replace(')', ""))
 }
 
 /// The confidence of an interval in brackets; empty if it is 95 %, as the page says at its beginning.
@@ -98,6 +98,8 @@ mod tests {
     fn only_an_unusual_confidence_is_told() {
         let of = |level: f64| with_level(&Interval { low: 0.5, high: 1.5, level }, 1);
         assert_eq!([of(0.95), of(0.968)], ["0.5 to 1.5", "0.5 to 1.5 (96.8 %)"]);
+        let in_brackets = |level: f64| with_interval(1.0, &Interval { low: 0.5, high: 1.5, level }, 1);
+        assert_eq!([in_brackets(0.95), in_brackets(0.968)], ["1.0 (0.5 to 1.5)", "1.0 (0.5 to 1.5, 96.8 %)"]);
     }
 
     #[test]
