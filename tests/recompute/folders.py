@@ -8,6 +8,7 @@ folder, command, rows, rows in doubt and commit. A difference ends with code 1.
 """
 
 import csv
+import gzip
 import re
 import sys
 import tomllib
@@ -23,7 +24,7 @@ def counted(folder, pattern):
     """Rows, rows in doubt, and the commits of the sweeps of a folder."""
     rows, doubted, commits = 0, 0, set()
     for path in sorted(folder.glob(pattern)):
-        with path.open(newline="") as file:
+        with gzip.open(path, "rt", newline="") if path.suffix == ".gz" else path.open(newline="") as file:
             warnings = [{word.split("(")[0] for word in row["warnings"].split(";")} for row in csv.DictReader(file)]
         run = [own for own in warnings if not own & {"no-program", "no-device"}]
         rows += len(run)
@@ -41,7 +42,7 @@ def main(readme):
         lines += 1
         name, rows, doubted, commit = found[1], int(found[2]), int(found[3]), found[4]
         folder = readme.parent if name == "*" else readme.parent / name
-        own = counted(folder, "*/records.csv") if any(folder.glob("*/records.csv")) else counted(folder, "records.csv")
+        own = counted(folder, "*/records.csv*") if any(folder.glob("*/records.csv*")) else counted(folder, "records.csv*")
         if own != (rows, doubted, {commit}):
             differences.append(f"{name}: {own}, and the table says {(rows, doubted, {commit})}")
     print(f"{lines} folders counted")

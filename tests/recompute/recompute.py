@@ -5,7 +5,7 @@ usage: recompute.py [--ledger FILE] CLAIMS.csv FOLDER...
 
 CLAIMS.csv is what `pathmark claims FOLDER... --out DIR` wrote into DIR/claims/claims.csv, or with a ledger into
 DIR/claims/LEDGER.csv. The queries are read from the ledger, or from experiments/claims/*.toml, and the numbers from
-FOLDER/EXPERIMENT/records.csv. It needs Python 3.11 and nothing else: the
+FOLDER/EXPERIMENT/records.csv or records.csv.gz. It needs Python 3.11 and nothing else: the
 quantiles of Student's t come from the incomplete beta function, those of the median from binomial sums.
 
 Values and ends of intervals must agree to nine digits, and verdicts must be the same. A difference ends with code 1.
@@ -14,6 +14,7 @@ rows.
 """
 
 import csv
+import gzip
 import math
 import sys
 import tomllib
@@ -163,9 +164,10 @@ def admits(row, conditions):
 
 def read(folder, experiment):
     path = folder / experiment / "records.csv"
-    if not path.is_file():
+    packed = path.with_name("records.csv.gz")
+    if not path.is_file() and not packed.is_file():
         return []
-    with path.open(newline="") as file:
+    with path.open(newline="") if path.is_file() else gzip.open(packed, "rt", newline="") as file:
         return [row for row in csv.DictReader(file) if not row["error"] and row["makespan_s"]]
 
 

@@ -6,11 +6,14 @@
 //! about others. So the interval follows from the spread of processes (T. Kalibera and R. Jones, "Rigorous Benchmarking
 //! in Reasonable Time", ISMM 2013, section 6), and a process counts as one value, however many pairs it has.
 //!
-//! The value of a process is the median of its logarithms of ratios, because single pairs are disturbed on one side.
+//! The value of a process is the median of its logarithms of ratios, because single pairs are disturbed on one side. Of
+//! many processes a few may be disturbed for their whole life; from sixteen on, the eighth at either end does not count
+//! ([`centre`]).
 
 use crate::interval::{Estimate, Interval, is_level};
 use crate::mean::{Moments, t_quantile};
 use crate::quantile::median;
+use crate::trimmed::{Centre, centre, degrees_of_freedom};
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 use std::collections::BTreeMap;
@@ -24,7 +27,7 @@ pub const FEWEST_PROCESSES: usize = 3;
 /// A ratio of two kinds of runs, from adjacent pairs.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PairedRatio {
-    /// The geometric mean over processes, with its interval.
+    /// The geometric mean over processes, of many without the farthest, with its interval.
     pub ratio: Estimate,
     pub pairs: usize,
     /// Processes: the independent values.
@@ -49,14 +52,12 @@ pub fn paired_ratio(processes: &[Vec<f64>], level: f64) -> Option<PairedRatio> {
     if processes.len() < FEWEST_PROCESSES {
         return None;
     }
-    let values = logarithms.iter().map(|own| median(own)).collect::<Option<Vec<f64>>>()?;
-    let moments = Moments::of(&values);
-    let (value, error) = (moments.mean()?, moments.standard_error().filter(|error| *error > 0.0)?);
-    let half_width = t_quantile(level, values.len() - 1)? * error;
+    let Centre { value, standard_error, degrees_of_freedom } = centre_of(&logarithms)?;
+    let half_width = t_quantile(level, degrees_of_freedom)? * standard_error;
     let interval = Interval::between(libm::exp(value - half_width), libm::exp(value + half_width), level)?;
     let ratio = Estimate { value: libm::exp(value), interval };
     let pairs = processes.iter().map(Vec::len).sum();
-    Some(PairedRatio { ratio, pairs, processes: values.len(), spread: spread_of(&logarithms, 1.0)? })
+    Some(PairedRatio { ratio, pairs, processes: processes.len(), spread: spread_of(&logarithms, 1.0)? })
 }
 
 /// The pairs of each process, from ratios with the numbers of their processes.
@@ -71,14 +72,16 @@ pub fn by_process(ratios: impl IntoIterator<Item = (u32, f64)>) -> Vec<Vec<f64>>
 /// The probability, if the ratio were 1 or more, that the processes show one as small as this or smaller (Student's t).
 /// 1 where [`paired_ratio`] has no answer.
 pub fn p_of_less(processes: &[Vec<f64>]) -> f64 {
-    let moments = logarithms(processes)
-        .filter(|all| all.len() >= FEWEST_PROCESSES)
-        .and_then(|all| Some(Moments::of(&all.iter().map(|own| median(own)).collect::<Option<Vec<f64>>>()?)));
-    let t = moments.and_then(|moments| {
-        let error = moments.standard_error().filter(|error| *error > 0.0)?;
-        Some((moments.mean()? / error, StudentsT::new(0.0, 1.0, processes.len() as f64 - 1.0).ok()?))
+    let centre = logarithms(processes).filter(|all| all.len() >= FEWEST_PROCESSES).and_then(|all| centre_of(&all));
+    let t = centre.and_then(|Centre { value, standard_error, degrees_of_freedom }| {
+        Some((value / standard_error, StudentsT::new(0.0, 1.0, degrees_of_freedom as f64).ok()?))
     });
     t.map_or(1.0, |(t, law)| law.cdf(t))
+}
+
+/// The centre of the medians of processes.
+fn centre_of(logarithms: &[Vec<f64>]) -> Option<Centre> {
+    centre(&logarithms.iter().map(|own| median(own)).collect::<Option<Vec<f64>>>()?)
 }
 
 /// Returns the spread of ratios within and between processes; `None` below two processes.
@@ -147,7 +150,7 @@ const MOST: usize = 1 << 12;
 impl Spread {
     /// The expected half width of an interval, as a share of the ratio.
     pub fn half_width(&self, processes: usize, pairs: usize, level: f64) -> Option<f64> {
-        let t = t_quantile(level, processes.checked_sub(1)?)?;
+        let t = t_quantile(level, degrees_of_freedom(processes)?)?;
         let variance = self.between * self.between + OF_MEDIAN * self.within * self.within / pairs.max(1) as f64;
         Some(libm::expm1(t * (variance / processes as f64).sqrt()))
     }
@@ -278,15 +281,14 @@ mod tests {
     /// seed is fixed.
     #[test]
     fn intervals_cover_the_ratio_on_a_machine_that_disturbs() {
-        for ratio in [1.0, 1.013, 0.5] {
+        for (ratio, processes, pairs) in [(1.0, 8, 30), (1.013, 8, 30), (0.5, 8, 30), (1.0, 16, 5), (0.98, 16, 5)] {
             let covered = (0..200).filter(|seed| {
-                let pairs = Machine::new(1 + *seed).pairs(8, 30, ratio);
-                let found = paired_ratio(&pairs, 0.95).unwrap();
-                assert_eq!((found.pairs, found.processes), (240, 8));
+                let found = paired_ratio(&Machine::new(1 + *seed).pairs(processes, pairs, ratio), 0.95).unwrap();
+                assert_eq!((found.pairs, found.processes), (processes * pairs, processes));
                 found.ratio.interval.contains(ratio)
             });
             let covered = covered.count();
-            assert!(covered >= 186, "{ratio}: {covered} of 200");
+            assert!(covered >= 186, "{ratio}, {processes} x {pairs}: {covered} of 200");
         }
     }
 

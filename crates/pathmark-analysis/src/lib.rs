@@ -30,6 +30,7 @@ pub mod scaling_law;
 pub mod slope;
 pub mod speedup;
 pub mod tail;
+mod trimmed;
 pub mod z_test;
 
 pub use interval::{Estimate, Interval};

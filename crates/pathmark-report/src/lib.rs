@@ -34,7 +34,7 @@ pub use results::Results;
 pub use words::counted;
 
 use crate::error::{Error, InputError, Result};
-use crate::experiment::MACHINE;
+use crate::experiment::{MACHINE, has_records, records_path};
 use crate::files::Files;
 use crate::lab::Lab;
 use page::{Section, benches, block, doctor, guards, table};
@@ -68,7 +68,10 @@ pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
         let results = Results::read(lab, out, &folder)?;
         let blocks = figures::blocks(&results)?;
         let own = folder.file_name().unwrap_or_default().to_string_lossy();
-        let files = ["records.csv", MACHINE].map(|file| format!("{own}/{file}")).to_vec();
+        let rows = records_path(&folder);
+        let files = [rows.as_path(), Path::new(MACHINE)]
+            .map(|file| format!("{own}/{}", file.file_name().unwrap_or_default().to_string_lossy()))
+            .to_vec();
         add(&folder, Section { files, ..Section::of(results, blocks) })?;
     }
     for section in [guards::section(out)?, page::bursts::section(out)?, benches::section(out)?].into_iter().flatten() {
@@ -99,7 +102,7 @@ fn experiment_folders(out: &Path) -> Result<Vec<PathBuf>> {
     let mut folders = Vec::new();
     for entry in entries {
         let path = entry.map_err(|e| Error::system("reading", out, e))?.path();
-        if path.join("records.csv").is_file() {
+        if has_records(&path) {
             folders.push(path);
         }
     }

@@ -6,7 +6,7 @@ use super::schedule::{Schedule, over_ranks, strategy};
 use crate::analysis::confidence_sequence::Stopping;
 use crate::error::{InputError, Result};
 use crate::experiment::{
-    Definition, EXTERNAL, Profile, RunFile, read_records, read_run_file, trace_file, wanted_references,
+    Definition, EXTERNAL, Profile, RunFile, read_records, read_run_file, records_path, trace_file, wanted_references,
 };
 use crate::film_file::read_film;
 use crate::image_io::{self, Image};
@@ -40,7 +40,7 @@ impl Results {
         let name = folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let definition = Definition::from_text(lab, &name, &path.display().to_string(), &read_text(&path)?)?;
         let run = read_run_file(&folder.join("machine.toml"))?;
-        let path = folder.join("records.csv");
+        let path = records_path(folder);
         let records = read_records(&path)?;
         check_identities(&records, &path)?;
         let (mut done, failed): (Vec<Record>, Vec<Record>) = records.into_iter().partition(|row| row.error.is_empty());

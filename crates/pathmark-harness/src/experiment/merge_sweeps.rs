@@ -7,6 +7,7 @@
 //! All parts are read and checked before any folder is made, and a merge that fails removes what it made.
 
 use super::cell::trace_file;
+use super::packed_rows::{has_records, records_path};
 use super::records_file::{RECORDS, read_records};
 use super::run_file::{MACHINE, RunFile, read_run_file};
 use super::sweep_shard::SweepShard;
@@ -40,7 +41,7 @@ impl Part {
     fn numbered(&self) -> Result<Vec<Record>> {
         let number = |row: &Record| {
             let too_large = |field: &str, value: String| {
-                let file = self.folder.join(RECORDS).display().to_string();
+                let file = records_path(&self.folder).display().to_string();
                 InputError::new(field, value, format!("is too large for a sweep of {} parts", self.shard.count))
                     .in_file(file, None)
             };
@@ -78,14 +79,14 @@ fn parts_in(folder: &Path) -> Result<Vec<(String, Part)>> {
     let mut parts = Vec::new();
     for entry in entries {
         let path = entry.map_err(|e| Error::system("reading", folder, e))?.path();
-        if !path.join(MACHINE).is_file() || !path.join(RECORDS).is_file() {
+        if !path.join(MACHINE).is_file() || !has_records(&path) {
             continue;
         }
         let run = read_run_file(&path.join(MACHINE))?;
         let Some(text) = &run.shard else { continue };
         let shard = SweepShard::parse(text)?;
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let rows = read_records(&path.join(RECORDS))?;
+        let rows = read_records(&records_path(&path))?;
         parts.push((name, Part { folder: path, shard, run, rows }));
     }
     if parts.is_empty() {

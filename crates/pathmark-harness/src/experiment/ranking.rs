@@ -6,6 +6,7 @@
 use super::Cell;
 use super::definition::Definition;
 use super::diff::{Times, is_in_pairs, level_of, of_processes, turn};
+use super::packed_rows::records_path;
 use super::profile::Profile;
 use super::records_file::read_records;
 use super::run_file::{MACHINE, read_run_file};
@@ -72,7 +73,7 @@ pub struct Ranking {
 
 /// Ranks the schedules in the folder of an experiment; with filters, only those that pass them.
 pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Ranking> {
-    let rows = read_records(&folder.join("records.csv"))?;
+    let rows = read_records(&records_path(folder))?;
     let run = read_run_file(&folder.join(MACHINE))?;
     let wanted = if filters.is_empty() { None } else { Some(wanted(lab, folder, &run.profile, filters)?) };
     let rows: Vec<&Record> =

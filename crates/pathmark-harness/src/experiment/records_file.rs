@@ -1,6 +1,6 @@
 //! `records.csv`: written row by row, flushed to the disk after each, so that a killed sweep loses at most the row it was writing.
 
-use super::formula;
+use super::{formula, packed_rows};
 use crate::atomic_file;
 use crate::disk::{OnDisk, Step, step};
 use crate::error::{Error, InputError, Result};
@@ -32,12 +32,7 @@ pub fn read_records(path: &Path) -> Result<Vec<Record>> {
     if std::fs::metadata(path).is_ok_and(|found| !found.is_file()) {
         return Err(InputError::new("records", path.display().to_string(), "is not a regular file").into());
     }
-    let bytes = std::fs::read(path).map_err(|e| match e.kind() {
-        std::io::ErrorKind::NotFound => {
-            InputError::new("records", path.display().to_string(), "there is no such file").into()
-        }
-        _ => Error::system("reading", path, e),
-    })?;
+    let bytes = packed_rows::read(path)?;
     let complete = complete_part(&bytes, path)?;
     if complete.len() < bytes.len() {
         let line = complete.matches('\n').count() + 1;

@@ -1,7 +1,8 @@
 //! The two measurements of a comparison: their experiments, rows, and the cells that the new one lost.
 
 use super::instructions;
-use super::records_file::{RECORDS, read_records};
+use super::packed_rows::{has_records, records_path};
+use super::records_file::read_records;
 use super::run_file::{MACHINE, RunFile, read_run_file};
 use crate::error::{Error, InputError, Result};
 use crate::measure::Record;
@@ -97,7 +98,7 @@ impl Lost {
 impl Side {
     fn read(path: &Path) -> Result<Self> {
         let (file, folder) =
-            if path.is_dir() { (path.join(RECORDS), Some(path)) } else { (path.to_path_buf(), path.parent()) };
+            if path.is_dir() { (records_path(path), Some(path)) } else { (path.to_path_buf(), path.parent()) };
         let machine = folder.map(|folder| folder.join(MACHINE)).filter(|path| path.is_file());
         let run = machine.map(|path| read_run_file(&path)).transpose()?;
         let (rows, instructions) = (read_records(&file)?, instructions::read(&file)?);
@@ -131,14 +132,14 @@ fn refused(field: &str, path: &Path, problem: &str) -> InputError {
 
 /// The experiments below a folder, by name; `None` for the folder of one experiment and for a file.
 fn experiments_in(field: &str, path: &Path) -> Result<Option<BTreeMap<String, PathBuf>>> {
-    if !path.is_dir() || path.join(RECORDS).exists() {
+    if !path.is_dir() || has_records(path) {
         return Ok(None);
     }
     let system = |e| Error::system("reading", path, e);
     let mut found = BTreeMap::new();
     for entry in fs::read_dir(path).map_err(system)? {
         let folder = entry.map_err(system)?.path();
-        if let Some(name) = folder.file_name().filter(|_| folder.join(RECORDS).is_file()) {
+        if let Some(name) = folder.file_name().filter(|_| has_records(&folder)) {
             found.insert(name.to_string_lossy().into_owned(), folder);
         }
     }

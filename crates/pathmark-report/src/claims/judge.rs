@@ -10,7 +10,7 @@ use super::measurement::Measurement;
 use super::statistic::{Cases, GuardColumn, GuardValue, Statistic};
 use super::verdict::Verdict;
 use crate::cases_file::{self, CaseRow};
-use crate::experiment::{MACHINE, read_run_file};
+use crate::experiment::{MACHINE, has_records, read_run_file, records_path};
 use crate::guard_prices::{self, PriceRow, read_prices};
 use crate::lab::Lab;
 use crate::prelude::*;
@@ -198,7 +198,7 @@ impl<'a> Library<'a> {
     fn load(&mut self, name: &str) -> Result<()> {
         if !self.experiments.contains_key(name) {
             let folder = self.out.join(name);
-            let has_rows = folder.join("records.csv").is_file();
+            let has_rows = has_records(&folder);
             let results = has_rows.then(|| Results::read(self.lab, self.out, &folder)).transpose()?;
             self.experiments.insert(name.to_string(), results.map(Evidence::of));
         }
@@ -241,7 +241,7 @@ impl<'a> Library<'a> {
             let started: Vec<&str> = own.iter().map(Item::started_utc).collect();
             let first = started.iter().min().filter(|first| !first.is_empty());
             return Ok(Some(Part {
-                source: self.out.join(name).join("records.csv"),
+                source: records_path(&self.out.join(name)),
                 alone,
                 rows: Some(evidence),
                 differences: differences(&test.comparable_if, &columns),
