@@ -14,6 +14,7 @@ mod external;
 mod faults;
 mod inspection;
 mod killed_ranks;
+mod ledgers;
 mod lost_cells;
 mod merged_sweeps;
 mod page;

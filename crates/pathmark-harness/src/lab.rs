@@ -31,6 +31,7 @@ pub struct Lab {
     workloads: Vec<workload::Entry>,
     scenes: Library,
     experiments: Vec<(String, String)>,
+    claims: Vec<(String, String)>,
     /// Names that a program added: kind, name and source location.
     added: Vec<(&'static str, String, &'static Location<'static>)>,
     /// The error for the first name that was already taken.
@@ -62,6 +63,7 @@ impl Lab {
             workloads: WORKLOADS.to_vec(),
             scenes: Library::default(),
             experiments: Vec::new(),
+            claims: Vec::new(),
             added: Vec::new(),
             problem: None,
         }
@@ -153,6 +155,16 @@ impl Lab {
         self
     }
 
+    /// Adds a ledger in TOML: `claims` judges the ledgers of a program in place of the four reports'.
+    #[must_use]
+    #[track_caller]
+    pub fn claims(mut self, name: &str, text: &str) -> Self {
+        let taken = self.claims.iter().any(|(known, _)| known == name);
+        self.note("claims", name, taken, Location::caller());
+        self.claims.push((name.to_string(), text.to_string()));
+        self
+    }
+
     fn is_subject(&self, name: &str) -> bool {
         self.scenes.names().any(|known| known == name) || self.workloads.iter().any(|known| known.name == name)
     }
@@ -229,6 +241,10 @@ impl Lab {
     /// text.
     pub fn scene_estimator(&self, name_or_path: &str) -> Result<String> {
         self.scenes.estimator_of(name_or_path)
+    }
+
+    pub fn own_claims(&self) -> &[(String, String)] {
+        &self.claims
     }
 
     pub fn own_experiments(&self) -> &[(String, String)] {

@@ -1,7 +1,10 @@
-//! `pathmark claims`: the claims of the four reports beside the measurements.
+//! `pathmark claims`: the claims of the four reports, or of a ledger of one's own, beside the measurements.
 
 use super::prelude::*;
-use crate::report::claims::{self, Answer, Listing, Report, judge};
+use crate::experiment::{Definition, Options, Plan, Prices, Profile, Sweep};
+use crate::report::claims::{self, Answer, Listing, Needs, Report, judge};
+use crate::shell;
+use std::collections::BTreeMap;
 
 /// `pathmark claims out --report A`
 #[derive(Args)]
@@ -15,13 +18,19 @@ pub(crate) struct Arguments {
     /// Print only the claims of this report
     #[arg(long, value_name = "LETTER")]
     report: Option<String>,
-    /// Judge the claims and findings of this file instead of the four reports'. With `--out`, its name is that of the files:
-    /// FINDINGS.md and claims/findings.csv for findings.toml
-    #[arg(long, value_name = "FILE", conflicts_with = "report")]
+    /// Judge the claims and findings of this file, or of all .toml files in this folder, instead of the four reports'. With
+    /// `--out`, its name is that of the files: FINDINGS.md and claims/findings.csv for findings.toml
+    #[arg(long, value_name = "FILE|DIR")]
     ledger: Option<PathBuf>,
+    /// Print for each claim the command that measures its rows, with seconds and bytes, and judge none; run only a pilot
+    #[arg(long, conflicts_with_all = ["out", "strict", "markdown"])]
+    plan: bool,
     /// Print an array of objects
     #[arg(long)]
     json: bool,
+    /// Print the text that `--out` writes
+    #[arg(long, conflicts_with = "json")]
+    markdown: bool,
     /// Exit with code 1 if a verdict differs from the expected one, or if its bound is not older than the rows that it judges
     #[arg(long)]
     strict: bool,
@@ -48,11 +57,11 @@ struct Row<'a> {
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     let (mut reports, listing) = match &arguments.ledger {
-        None => (Report::all()?, Listing::of_reports()),
+        None => (Report::all(lab)?, Listing::of_reports()),
         Some(path) => {
-            let ledger = Report::read(path)?;
-            let listing = Listing::of_ledger(path, &ledger);
-            (vec![ledger], listing)
+            let ledgers = Report::read(path)?;
+            let listing = Listing::of_ledgers(path, &ledgers);
+            (ledgers, listing)
         }
     };
     if let Some(letter) = &arguments.report {
@@ -61,6 +70,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
         if reports.is_empty() {
             return Err(InputError::new("report", letter, "there is no such report").allowed(known.join(", ")).into());
         }
+    }
+    if arguments.plan {
+        return plan(lab, &reports, arguments.json);
     }
     for folder in &arguments.folders {
         if !folder.is_dir() {
@@ -78,6 +90,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     }
     if arguments.json {
         print_json(&answers.iter().map(row).collect::<Vec<_>>())?;
+    } else if arguments.markdown {
+        print(listing.markdown_of(&answers, Path::new(".")).trim_end())?;
     } else {
         print(&answers.iter().map(line).collect::<Vec<String>>().join("\n"))?;
         print(&format!("\n{} claims: {}", answers.len(), claims::totals(&answers)))?;
@@ -95,6 +109,80 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
         return Err(Error::Check(problems.join("; ")));
     }
     Ok(())
+}
+
+/// How the rows of a claim are measured.
+#[derive(Serialize)]
+struct Planned<'a> {
+    claim: u32,
+    report: &'a str,
+    says: &'a str,
+    /// Empty if this program cannot measure it.
+    command: String,
+    /// Of the whole experiment, which may answer several claims.
+    seconds: Option<f64>,
+    bytes: Option<u64>,
+    /// Why there is no command.
+    why: String,
+}
+
+/// Prints for each claim the command that measures its rows, and what it takes.
+fn plan(lab: &Arc<Lab>, reports: &[Report], as_json: bool) -> Result<()> {
+    let mut prices = Prices::new(lab);
+    let mut plans: BTreeMap<String, Option<(String, Plan)>> = BTreeMap::new();
+    let mut rows = Vec::new();
+    for (report, claim) in reports.iter().flat_map(|report| report.claims.iter().map(move |claim| (report, claim))) {
+        let (command, plan, why) = match report.needs(claim) {
+            Needs::Experiment(name) => {
+                let planned = match plans.get(&name) {
+                    Some(planned) => planned.clone(),
+                    None => {
+                        let planned = plan_of(lab, &name, &mut prices)?;
+                        plans.entry(name.clone()).or_insert(planned).clone()
+                    }
+                };
+                match planned {
+                    Some((command, plan)) => (command, Some(plan), String::new()),
+                    None => (String::new(), None, format!("no experiment is called {name}")),
+                }
+            }
+            Needs::Table(file) => (String::new(), None, format!("rows of another program, in {file}")),
+            Needs::HardCases => (shell::command(["selftest", "--out", "out"]), None, String::new()),
+            Needs::Nothing(why) => (String::new(), None, why),
+        };
+        let (seconds, bytes) = (plan.as_ref().map(Plan::seconds), plan.map(|plan| plan.bytes));
+        rows.push(Planned { claim: claim.id, report: &report.report, says: &claim.claim, command, seconds, bytes, why });
+    }
+    rows.sort_by_key(|row| row.claim);
+    if as_json {
+        return print_json(&rows);
+    }
+    let line = |row: &Planned<'_>| {
+        let costs = row.seconds.zip(row.bytes).map(|(s, bytes)| format!("  # {s:.0} s, {:.1} MB", bytes as f64 / 1e6));
+        let how = if row.command.is_empty() { format!("- {}", row.why) } else { row.command.clone() };
+        format!("{:>3} {}  {}\n        {how}{}", row.claim, row.report, row.says, costs.unwrap_or_default())
+    };
+    print(&rows.iter().map(line).collect::<Vec<String>>().join("\n"))?;
+    let (mut seconds, mut bytes) = (0.0, 0);
+    for (_, plan) in plans.values().flatten() {
+        (seconds, bytes) = (seconds + plan.seconds(), bytes + plan.bytes);
+    }
+    let of = counted(plans.values().flatten().count(), "experiment");
+    print(&format!("\n{of}, each run once: about {seconds:.0} s, {:.0} MB", bytes as f64 / 1e6))
+}
+
+/// The command of an experiment at the reports' size, or else at the quick one, and its plan; `None` if there is no such
+/// experiment.
+fn plan_of(lab: &Arc<Lab>, name: &str, prices: &mut Prices<'_>) -> Result<Option<(String, Plan)>> {
+    if !Definition::known(lab).any(|(known, _)| known == name) {
+        return Ok(None);
+    }
+    let definition = Definition::load(lab, name)?;
+    let (profile, size) =
+        if definition.has(Profile::Reports) { (Profile::Reports, "--reports") } else { (Profile::Quick, "--quick") };
+    let options = Options { out: PathBuf::from("out"), profile, ..Options::default() };
+    let plan = Sweep::new(&definition, &options, &mut Files::default())?.plan(prices)?;
+    Ok(Some((shell::command(["run", name, size]), plan)))
 }
 
 fn row<'a>(answer: &'a Answer<'_>) -> Row<'a> {

@@ -65,9 +65,9 @@ pub(super) enum Verb {
     Selftest(selftest::Arguments),
     /// Compare pools on short parallel regions with gaps: wake latency, and processor time of idle workers.
     Bursts(bursts::Arguments),
-    /// Judge the claims of the four reports by the results in a folder.
+    /// Judge the claims of the four reports, or of a ledger of your own, by the results in a folder.
     Claims(claims::Arguments),
-    /// Write a commented starter file for an experiment or a scene.
+    /// Write a commented starter file for an experiment, a scene or a ledger of claims.
     New(new::Arguments),
     /// Examine this machine before a sweep: what disturbs measurements, and which differences can be seen?
     Doctor(doctor::Arguments),

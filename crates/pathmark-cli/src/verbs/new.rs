@@ -1,4 +1,4 @@
-//! `pathmark new experiment|scene NAME`: a commented file to start from.
+//! `pathmark new experiment|scene|claims NAME`: a commented file to start from.
 
 use super::prelude::*;
 use crate::shell;
@@ -18,12 +18,14 @@ pub(crate) struct Arguments {
 enum Kind {
     Experiment,
     Scene,
+    Claims,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
     let (text, verb) = match arguments.kind {
-        Kind::Experiment => (include_str!("../../assets/starter-experiment.toml"), "run"),
-        Kind::Scene => (include_str!("../../assets/starter-scene.toml"), "render"),
+        Kind::Experiment => (include_str!("../../assets/starter-experiment.toml"), &["run"][..]),
+        Kind::Scene => (include_str!("../../assets/starter-scene.toml"), &["render"][..]),
+        Kind::Claims => (include_str!("../../assets/starter-claims.toml"), &["claims", "out", "--ledger"][..]),
     };
     if arguments.name.file_name().is_none() || arguments.name.as_os_str().as_encoded_bytes().ends_with(b"/") {
         return Err(InputError::new("name", arguments.name.display().to_string(), "is not the name of a file").into());
@@ -45,5 +47,5 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         InputError::new("name", &shown, problem).allowed("a new name in a folder that exists").into()
     })?;
     file.write_all(text.as_bytes()).map_err(|e| Error::system("writing", &path, e))?;
-    print(&format!("created {shown}; edit it, then run: {}", shell::command([verb, &shown])))
+    print(&format!("created {shown}; edit it, then run: {}", shell::command(verb.iter().copied().chain([shown.as_str()]))))
 }

@@ -25,27 +25,23 @@ pub(super) fn text(row: &Columns, column: &str) -> String {
     }
 }
 
+/// The value of a column as a number. Settings of other programs are texts.
 pub(super) fn number(row: &Columns, column: &str) -> Option<f64> {
-    row.get(column)?.as_f64()
-}
-
-/// The name of a column of `records.csv`.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
-#[serde(try_from = "String")]
-pub(super) struct Column(String);
-
-impl TryFrom<String> for Column {
-    type Error = String;
-
-    fn try_from(name: String) -> Result<Self, String> {
-        let known = columns(&Record::default());
-        if known.contains_key(&name) {
-            return Ok(Self(name));
-        }
-        let names: Vec<String> = known.keys().map(|known| format!("`{known}`")).collect();
-        Err(format!("there is no column `{name}` in records.csv, expected one of {}", names.join(", ")))
+    match row.get(column)? {
+        serde_json::Value::String(text) => text.parse().ok().filter(|number: &f64| number.is_finite()),
+        other => other.as_f64(),
     }
 }
+
+/// The columns of `records.csv`.
+pub(super) fn known_columns() -> Vec<String> {
+    columns(&Record::default()).keys().cloned().collect()
+}
+
+/// The name of a column, of `records.csv` or of another program's table; `Claim::resolve` checks that it is there.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(transparent)]
+pub(super) struct Column(String);
 
 impl Deref for Column {
     type Target = str;

@@ -25,6 +25,8 @@
 //! frozen = "2026-11-27T21:14:47Z 634521b2" # when query, prediction and expectation were fixed, and in which commit
 //! ```
 //!
+//! A ledger of another paper also tells its `source` and `doi`, and names rows of other programs (see `plain_rows.rs`).
+//!
 //! Optional: `changed`, the reason for a change after the first version, `a-fortiori = true`, if the bound holds under any conditions, and `note`. Instead of a
 //! statistic a claim may have `context` (why there is nothing to measure), `not-comparable` (which condition of the report cannot be met) or `missing` (why
 //! no rows exist yet). A statistic without a prediction is a finding: a number of one's own, which needs neither quote nor reason nor expectation.
@@ -32,15 +34,31 @@
 //! Who changes a query, a prediction or an expectation writes the time into `frozen`: rows that were measured before cannot confirm or refute the claim in
 //! `claims --strict`. A commit cannot contain its own hash, so the time alone is enough.
 
-use super::condition::Conditions;
-use super::statistic::Statistic;
+use super::condition::{Conditions, known_columns};
+use super::plain_rows::PlainRows;
+use super::statistic::{OF_PLAIN_ROWS, Statistic};
 use super::verdict::{NAMES, Verdict};
 use crate::error::{Error, InputError, Result};
 use crate::experiment;
 use crate::input::{locate, parse, read_text};
+use crate::lab::Lab;
 use serde::Deserialize;
+use std::collections::BTreeSet;
 use std::iter::once;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// What answers a claim.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Needs<'a> {
+    /// Rows of that experiment.
+    Experiment(String),
+    /// Rows of another program, in that file.
+    Table(&'a str),
+    /// Hard cases or the price list of the guards.
+    HardCases,
+    /// Nothing that can be measured, and why.
+    Nothing(String),
+}
 
 /// A report and its claims.
 #[derive(Debug, Deserialize)]
@@ -51,6 +69,14 @@ pub struct Report {
     pub title: String,
     /// Its authors and its measurements.
     pub about: String,
+    /// Authors, title, year and publisher, as one cites it; may be empty.
+    #[serde(default)]
+    pub source: String,
+    #[serde(default)]
+    pub doi: String,
+    /// Rows of other programs.
+    #[serde(default, rename = "table")]
+    pub(super) tables: Vec<PlainRows>,
     #[serde(rename = "claim")]
     pub claims: Vec<Claim>,
 }
@@ -153,7 +179,8 @@ impl Claim {
         self.within.is_some() || self.at_least.is_some() || self.at_most.is_some()
     }
 
-    fn resolve(&mut self) -> Result<()> {
+    /// Checks the claim, and reads its statistic; `tables` are the ledger's.
+    fn resolve(&mut self, tables: &[PlainRows]) -> Result<()> {
         let is_finding = self.statistic.is_some() && !self.predicts() && self.frozen.is_empty();
         if let Some(field) = self.missing_field().filter(|_| !is_finding) {
             return Err(InputError::new("id", self.id.to_string(), format!("has no `{field}`")).into());
@@ -180,6 +207,7 @@ impl Claim {
             return self.fields.keys().next().map_or(Ok(()), |field| Err(unknown(field)));
         };
         let statistic = Statistic::of(name, &self.fields)?;
+        check_columns(&statistic, &self.comparable_if, tables)?;
         let predicted = match (self.within, self.at_least, self.at_most) {
             (Some([low, high]), None, None) if low <= high => Some([low, high]),
             (None, Some(low), None) => Some([low, f64::INFINITY]),
@@ -216,9 +244,18 @@ impl Report {
     /// Reads a report's claims from their text.
     pub fn from_text(file: &str, text: &str) -> Result<Self> {
         let mut report: Self = parse(text, file)?;
+        for table in &report.tables {
+            table.check().map_err(|error| match error {
+                Error::Input(error) => {
+                    let at = locate(text, &error.field, &error.value);
+                    error.in_file(file, at).into()
+                }
+                other => other,
+            })?;
+        }
         for claim in &mut report.claims {
             let id = claim.id;
-            claim.resolve().map_err(|error| match error {
+            claim.resolve(&report.tables).map_err(|error| match error {
                 Error::Input(error) => {
                     let at = place(text, id, &error.field, &error.value);
                     error.in_file(file, at).into()
@@ -229,15 +266,91 @@ impl Report {
         Ok(report)
     }
 
-    /// Reads a ledger of somebody's own.
-    pub fn read(path: &Path) -> Result<Self> {
-        Self::from_text(&path.display().to_string(), &read_text(path)?)
+    /// Reads a ledger of somebody's own, or all of a folder in the order of their names. Numbers of claims and letters of
+    /// reports must be unique.
+    pub fn read(path: &Path) -> Result<Vec<Self>> {
+        let files = if path.is_dir() { ledgers_in(path)? } else { vec![path.to_path_buf()] };
+        if files.is_empty() {
+            let problem = "has no .toml file, so it is no folder of ledgers";
+            return Err(InputError::new("ledger", path.display().to_string(), problem).into());
+        }
+        let of_file = |file: &PathBuf| Self::from_text(&file.display().to_string(), &read_text(file)?);
+        let ledgers = files.iter().map(of_file).collect::<Result<Vec<_>>>()?;
+        let mut letters = BTreeSet::new();
+        let mut numbers = BTreeSet::new();
+        for (file, ledger) in files.iter().zip(&ledgers) {
+            let twice = |field: &str, value: String| {
+                let problem = "occurs twice; numbers of claims and names of reports are unique over all ledgers";
+                Err(InputError::new(field, value, problem).in_file(file.display().to_string(), None).into())
+            };
+            if !letters.insert(&ledger.report) {
+                return twice("report", ledger.report.clone());
+            }
+            if let Some(claim) = ledger.claims.iter().find(|claim| !numbers.insert(claim.id)) {
+                return twice("id", claim.id.to_string());
+            }
+        }
+        Ok(ledgers)
     }
 
-    /// The four reports, with their claims.
-    pub fn all() -> Result<Vec<Self>> {
-        experiment::claims().iter().map(|(name, text)| Self::from_text(&format!("claims/{name}.toml"), text)).collect()
+    /// The ledgers that a program added to its lab, or else the four reports.
+    pub fn all(lab: &Lab) -> Result<Vec<Self>> {
+        let own = lab.own_claims();
+        let texts = if own.is_empty() { experiment::claims() } else { own };
+        texts.iter().map(|(name, text)| Self::from_text(&format!("claims/{name}.toml"), text)).collect()
     }
+
+    /// What answers a claim of this ledger.
+    pub fn needs(&self, claim: &Claim) -> Needs<'_> {
+        match claim.test().map(|test| &test.statistic) {
+            Err((_, why)) => Needs::Nothing(why.to_string()),
+            Ok(Statistic::OfRows { experiment, .. }) => match self.table(experiment) {
+                Some(table) => Needs::Table(table.file()),
+                None => Needs::Experiment(experiment.clone()),
+            },
+            Ok(Statistic::Case(_) | Statistic::Guard(_)) => Needs::HardCases,
+        }
+    }
+
+    /// The table of another program's rows that a claim of this ledger asks for.
+    pub(super) fn table(&self, experiment: &str) -> Option<&PlainRows> {
+        self.tables.iter().find(|table| table.name == experiment)
+    }
+}
+
+/// Refuses a column that the rows of a statistic do not have.
+fn check_columns(statistic: &Statistic, comparable_if: &Conditions, tables: &[PlainRows]) -> Result<()> {
+    let Statistic::OfRows { experiment, kind, .. } = statistic else { return Ok(()) };
+    let table = tables.iter().find(|table| table.name == *experiment);
+    if table.is_some() && kind.is_of_own_rows() {
+        let problem = "asks for columns that only Pathmark's rows have";
+        return Err(InputError::new("experiment", experiment, problem).allowed(OF_PLAIN_ROWS).into());
+    }
+    let known = table.map_or_else(known_columns, |table| table.columns().map(str::to_string).collect());
+    let own = statistic.columns().into_iter();
+    let mut all = own.chain(comparable_if.columns().map(|column| ("comparable-if", column)));
+    match all.find(|(_, column)| !known.iter().any(|own| own == column)) {
+        None => Ok(()),
+        Some((field, column)) => {
+            let rows = table.map_or_else(|| "records.csv".to_string(), |table| format!("the table {}", table.name));
+            let problem = format!("there is no such column in {rows}");
+            Err(InputError::new(field, column, problem).allowed(known.join(", ")).into())
+        }
+    }
+}
+
+/// The ledgers of a folder, by name.
+fn ledgers_in(folder: &Path) -> Result<Vec<PathBuf>> {
+    let system = |e| Error::system("reading", folder, e);
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(system)? {
+        let path = entry.map_err(system)?.path();
+        if path.extension().is_some_and(|ending| ending == "toml") {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
 }
 
 /// Whether a text is a time such as `2026-01-31T12:00:00Z`: such texts are in the order of their times.

@@ -66,7 +66,8 @@ impl Answer<'_> {
 struct Library<'a> {
     lab: &'a Arc<Lab>,
     out: &'a Path,
-    experiments: BTreeMap<String, Option<Evidence>>,
+    /// By experiment, or by report and table.
+    experiments: BTreeMap<(String, String), Option<Evidence>>,
     cases: Vec<CaseRow>,
     prices: Vec<PriceRow>,
 }
@@ -106,11 +107,11 @@ pub fn judge<'a>(lab: &Arc<Lab>, reports: &'a [Report], folders: &[PathBuf]) -> 
         };
         if let Statistic::OfRows { experiment, .. } = &test.statistic {
             for library in &mut libraries {
-                library.load(experiment)?;
+                library.load(report, experiment)?;
             }
         }
         let parts =
-            libraries.iter().filter_map(|library| library.part(test).transpose()).collect::<Result<Vec<_>>>()?;
+            libraries.iter().filter_map(|library| library.part(report, test).transpose()).collect::<Result<Vec<_>>>()?;
         if parts.is_empty() {
             answers.push(without(Verdict::NotAnswered, "The results have no such rows."));
             continue;
@@ -194,19 +195,26 @@ impl<'a> Library<'a> {
         })
     }
 
-    /// Reads an experiment, if the folder has it.
-    fn load(&mut self, name: &str) -> Result<()> {
-        if !self.experiments.contains_key(name) {
-            let folder = self.out.join(name);
-            let has_rows = has_records(&folder);
-            let results = has_rows.then(|| Results::read(self.lab, self.out, &folder)).transpose()?;
-            self.experiments.insert(name.to_string(), results.map(Evidence::of));
+    /// Reads an experiment or a table of the report's ledger, if the folder has it.
+    fn load(&mut self, report: &Report, name: &str) -> Result<()> {
+        let key = key(report, name);
+        if self.experiments.contains_key(&key) {
+            return Ok(());
         }
+        let evidence = match report.table(name) {
+            Some(table) => table.read(self.out)?.map(|rows| Evidence::of_table(rows, &table.settings)),
+            None => {
+                let folder = self.out.join(name);
+                let has_rows = has_records(&folder);
+                has_rows.then(|| Results::read(self.lab, self.out, &folder)).transpose()?.map(Evidence::of)
+            }
+        };
+        self.experiments.insert(key, evidence);
         Ok(())
     }
 
     /// The part that answers a claim; `None` if there is none.
-    fn part(&self, test: &Test) -> Result<Option<Part<'_>>> {
+    fn part(&self, report: &Report, test: &Test) -> Result<Option<Part<'_>>> {
         let of_table = |found: Option<Measurement>, folder: &str, file: &str| {
             let folder = self.out.join(folder);
             found.map(|alone| Part {
@@ -219,8 +227,11 @@ impl<'a> Library<'a> {
         };
         match &test.statistic {
             Statistic::OfRows { experiment, rows, .. } => {
-                let Some(evidence) = self.experiments.get(experiment).and_then(Option::as_ref) else { return Ok(None) };
-                self.rows(evidence, experiment, rows, test)
+                let evidence = self.experiments.get(&key(report, experiment)).and_then(Option::as_ref);
+                let Some(evidence) = evidence else { return Ok(None) };
+                let of_table = report.table(experiment).map(|table| table.path(self.out));
+                let source = of_table.unwrap_or_else(|| records_path(&self.out.join(experiment)));
+                self.rows(evidence, source, rows, test)
             }
             Statistic::Case(Cases { ids }) => {
                 Ok(of_table(self.failed_cases(ids), cases_file::FOLDER, cases_file::FILE))
@@ -232,7 +243,13 @@ impl<'a> Library<'a> {
     }
 
     /// The rows at the report's own size, or else all rows with the conditions in which they differ.
-    fn rows<'b>(&self, evidence: &'b Evidence, name: &str, rows: &Conditions, test: &Test) -> Result<Option<Part<'b>>> {
+    fn rows<'b>(
+        &self,
+        evidence: &'b Evidence,
+        source: PathBuf,
+        rows: &Conditions,
+        test: &Test,
+    ) -> Result<Option<Part<'b>>> {
         for is_comparable in [true, false] {
             let Some(query) = query(test, is_comparable) else { break };
             let Some(alone) = measure(&[evidence], query)? else { continue };
@@ -241,7 +258,7 @@ impl<'a> Library<'a> {
             let started: Vec<&str> = own.iter().map(Item::started_utc).collect();
             let first = started.iter().min().filter(|first| !first.is_empty());
             return Ok(Some(Part {
-                source: records_path(&self.out.join(name)),
+                source,
                 alone,
                 rows: Some(evidence),
                 differences: differences(&test.comparable_if, &columns),
@@ -268,6 +285,12 @@ impl<'a> Library<'a> {
         };
         Some(Measurement::of_table(value, Interval::between(low, high, guard_prices::LEVEL), 1, "price list"))
     }
+}
+
+/// The place of an experiment's rows, or of a table of the report's ledger.
+fn key(report: &Report, name: &str) -> (String, String) {
+    let ledger = report.table(name).map_or_else(String::new, |_| report.report.clone());
+    (ledger, name.to_string())
 }
 
 /// The time at which the measurement of a folder began, if its file tells it.

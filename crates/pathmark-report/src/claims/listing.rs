@@ -10,7 +10,7 @@ use crate::files::Files;
 use crate::plot::number;
 use crate::prelude::{counted, joined};
 use crate::table::Table;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::fs::File;
 use std::io::Read;
@@ -111,10 +111,21 @@ impl Listing {
         Self { stem: FOLDER.to_string(), heading: HEADING.to_string() }
     }
 
-    /// Files with the name of the ledger: `FINDINGS.md` and `claims/findings.csv` for `findings.toml`.
-    pub fn of_ledger(file: &Path, ledger: &Report) -> Self {
-        let stem = file.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
-        Self { stem, heading: format!("# {}", ledger.title) }
+    /// Files with the name of the ledger, or of a folder of ledgers: `FINDINGS.md` and `claims/findings.csv` for
+    /// `findings.toml`.
+    pub fn of_ledgers(path: &Path, ledgers: &[Report]) -> Self {
+        let name = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+        let stem = name.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
+        let heading = match ledgers {
+            [one] => format!("# {}", one.title),
+            _ => format!("# The claims of {stem}"),
+        };
+        Self { stem, heading }
+    }
+
+    /// The verdicts as a text whose links begin at this folder.
+    pub fn markdown_of(&self, answers: &[Answer<'_>], base: &Path) -> String {
+        markdown(&self.heading, answers, base)
     }
 
     fn csv(&self, out: &Path) -> PathBuf {
@@ -277,8 +288,13 @@ fn markdown(heading: &str, answers: &[Answer<'_>], base: &Path) -> String {
     ordered.sort_by_key(|answer| (&answer.report.report, answer.claim.id));
     for answer in ordered {
         if last.is_none_or(|last| last.report != answer.report.report) {
-            let Report { report, title, about, .. } = answer.report;
+            let Report { report, title, about, source, doi, .. } = answer.report;
             let _ = write!(text, "\n## Report {report}: {title}\n\n{}\n", about.trim());
+            let doi = Some(doi).filter(|doi| !doi.is_empty()).map(|doi| format!("<https://doi.org/{doi}>"));
+            let cited = joined([source.clone(), doi.unwrap_or_default()]);
+            if !cited.is_empty() {
+                let _ = write!(text, "\nSource: {cited}\n");
+            }
             last = Some(answer.report);
         }
         text.push_str(&entry(answer, base));
@@ -345,7 +361,7 @@ fn capital(verdict: Verdict) -> String {
 /// The number of claims with each verdict, in a sentence.
 pub(super) fn in_short(answers: &[Answer<'_>]) -> String {
     let (all, totals) = (answers.len(), totals(answers));
-    format!("Verdicts on {all} claims of the four reports, computed from these rows: {totals}.")
+    format!("Verdicts on {all} claims, computed from these rows: {totals}.")
 }
 
 /// The number of claims with each verdict, without those that none has: `2 confirmed, 1 open`.
@@ -364,14 +380,19 @@ pub(crate) fn blocks(answers: &[Answer<'_>]) -> Vec<Block> {
     });
     let verdicts = Table::of_text("Verdicts", &heads, &rows.collect::<Vec<_>>());
     let mut blocks = vec![Block::Table { stem: "verdicts", table: verdicts }];
+    let reports: BTreeSet<&str> = answers.iter().map(|answer| answer.report.report.as_str()).collect();
+    let reports: Vec<&str> = reports.into_iter().collect();
     let (unanswered, answered): (Vec<&Answer<'_>>, Vec<&Answer<'_>>) =
         answers.iter().partition(|answer| answer.verdict == Verdict::NotAnswered);
-    for (stem, letter) in [("claims-a", "A"), ("claims-b", "B"), ("claims-c", "C"), ("claims-d", "D")] {
-        let mut own: Vec<&Answer<'_>> =
-            answered.iter().copied().filter(|answer| answer.report.report == letter).collect();
+    for (at, stem) in ["claims-a", "claims-b", "claims-c", "claims-d", "claims-e", "claims-f"].into_iter().enumerate() {
+        let mut own: Vec<&Answer<'_>> = match reports.get(at) {
+            Some(letter) => answered.iter().copied().filter(|answer| answer.report.report == *letter).collect(),
+            None => break,
+        };
         // Those that rows have judged come first.
         own.sort_by_key(|answer| (std::cmp::Reverse(answer.verdict.says()), answer.claim.id));
         let Some(first) = own.first() else { continue };
+        let letter = &first.report.report;
         blocks.push(Block::finding(format!("Report {letter}, {}. {}", first.report.title, first.report.about.trim())));
         let title = format!("Report {letter}: claims and verdicts");
         blocks.push(

@@ -22,8 +22,13 @@ use std::collections::HashMap;
 
 /// An experiment's rows in one folder with their columns: all runs of each process.
 pub(super) struct Evidence {
-    results: Results,
+    /// `None` for a table of another program.
+    results: Option<Results>,
+    /// The rows of another program.
+    table: Vec<Row>,
     columns: Vec<Columns>,
+    /// The columns of another program's table that say what ran.
+    settings: Vec<String>,
 }
 
 /// A row of a folder, by the folder's place among those that are measured together.
@@ -82,12 +87,17 @@ impl Unit {
 impl Evidence {
     pub(super) fn of(results: Results) -> Self {
         let columns = results.rows().flat_map(Row::runs).map(|row| columns(row.as_written())).collect();
-        Self { results, columns }
+        Self { results: Some(results), table: Vec::new(), columns, settings: Vec::new() }
+    }
+
+    /// Rows of another program, with the columns that say what ran.
+    pub(super) fn of_table((table, columns): (Vec<Row>, Vec<Columns>), settings: &[String]) -> Self {
+        Self { results: None, table, columns, settings: settings.to_vec() }
     }
 
     fn items(&self, run: usize) -> impl Iterator<Item = Item<'_>> {
-        let rows = self.results.rows().flat_map(Row::runs).zip(&self.columns);
-        rows.map(move |(row, columns)| Item { run, row, columns })
+        let rows = self.results.iter().flat_map(Results::rows).flat_map(Row::runs).chain(&self.table);
+        rows.zip(&self.columns).map(move |(row, columns)| Item { run, row, columns })
     }
 
     /// The rows that meet some conditions.
@@ -104,16 +114,17 @@ impl Evidence {
         column: ForecastColumn,
         level: f64,
     ) -> Result<Option<Measurement>> {
-        let path = self.results.folder.join("calibration.csv");
+        let Some(results) = &self.results else { return Ok(None) };
+        let path = results.folder.join("calibration.csv");
         if !path.is_file() {
             return Ok(None);
         }
-        let mut known = contenders(&self.results.definition.lab, &read_calibration(&path)?);
+        let mut known = contenders(&results.definition.lab, &read_calibration(&path)?);
         known.push(Contender::longest_first());
         known.retain(|contender| contender.name == strategy);
         let mut traces = Vec::new();
         for row in rows.iter().filter(|row| row.schedule.is_serial()) {
-            traces.extend(self.results.trace(row)?.map(|trace| trace.costs_s()));
+            traces.extend(results.trace(row)?.map(|trace| trace.costs_s()));
         }
         let told = forecast(&traces, &known, &[cores], &Hardware::default(), level);
         let Some(told) = told.first() else { return Ok(None) };
@@ -142,7 +153,8 @@ struct Rows<'a> {
 
 /// The statistic of the rows of some runs together; `None` if there are no such rows, or too few to compute it.
 pub(super) fn measure(runs: &[&Evidence], query: Query<'_>) -> Result<Option<Measurement>> {
-    let is_sequential = runs.iter().any(|run| run.results.stopping() == Stopping::Sequential);
+    let mut results = runs.iter().filter_map(|run| run.results.as_ref());
+    let is_sequential = results.any(|results| results.stopping() == Stopping::Sequential);
     let stopping = if is_sequential { Stopping::Sequential } else { Stopping::Fixed };
     let own = items(runs).filter(|item| query.admits(item.columns)).collect();
     Rows { runs, query, own, stopping }.measure()
@@ -236,7 +248,8 @@ impl<'a> Rows<'a> {
     /// rows are of pairs, or those of other cells, in the same repetition. Partners may differ only in columns that the
     /// conditions name, and in those that change with them.
     fn ratios(&self, over: &Conditions, column: &str) -> Result<Vec<(Item<'a>, f64)>> {
-        let identity = identity(self.query.rows, over);
+        let settings = self.runs.first().map_or(&[][..], |run| &run.settings);
+        let identity = identity(self.query.rows, over, settings);
         let key = |item: &Item<'_>, turn: Turn| {
             (item.run, identity.iter().map(|column| text(item.columns, column)).collect::<Vec<String>>(), turn)
         };
@@ -281,12 +294,14 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// The columns that partners share: those of image and schedule that the conditions leave alone.
-pub(super) fn identity(rows: &Conditions, over: &Conditions) -> Vec<&'static str> {
+/// The columns that partners share: those of image and schedule, or the `settings` of another program's table, that the
+/// conditions leave alone.
+pub(super) fn identity<'a>(rows: &Conditions, over: &Conditions, settings: &'a [String]) -> Vec<&'a str> {
     let named: BTreeSet<&str> = rows.columns().chain(over.columns()).collect();
     let followers = FOLLOWERS.iter().filter(|(column, _)| named.contains(column)).flat_map(|(_, others)| *others);
     let free: BTreeSet<&str> = named.iter().copied().chain(followers.copied()).collect();
-    image_columns().chain(schedule_columns()).filter(|column| !free.contains(column)).collect()
+    let own = image_columns().chain(schedule_columns()).chain(settings.iter().map(String::as_str));
+    own.filter(|column| !free.contains(column)).collect()
 }
 
 /// A run, a cell and a turn.

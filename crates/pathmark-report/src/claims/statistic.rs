@@ -101,10 +101,57 @@ struct OfRows {
     fields: Table,
 }
 
+impl Kind {
+    /// The columns that it asks for, each with the field that names it.
+    fn columns(&self) -> Vec<(&'static str, &str)> {
+        let own: Vec<(&'static str, Option<&Column>)> = match self {
+            Self::Value { column, plus, per } => {
+                vec![("column", Some(column)), ("plus", plus.as_ref()), ("per", per.as_ref())]
+            }
+            Self::Count { column } | Self::PairedRatio { column, .. } | Self::MeanRatio { column, .. } => {
+                vec![("column", Some(column))]
+            }
+            Self::Speedup { column, .. } => vec![("column", column.as_ref())],
+            Self::Exponent { x, y } => vec![("x", Some(x)), ("y", Some(y))],
+            Self::RankCorrelation { x, y, by } => vec![("x", Some(x)), ("y", Some(y)), ("by", Some(by))],
+            Self::RmseSlope {} | Self::Checksum {} | Self::Forecast { .. } => Vec::new(),
+        };
+        let over = self.over().into_iter().flat_map(Conditions::columns).map(|column| ("over", column));
+        own.into_iter().filter_map(|(field, column)| Some((field, &**column?))).chain(over).collect()
+    }
+
+    /// The rows that it compares with.
+    pub(super) fn over(&self) -> Option<&Conditions> {
+        match self {
+            Self::PairedRatio { over, .. } | Self::Speedup { over, .. } | Self::MeanRatio { over, .. } => Some(over),
+            _ => None,
+        }
+    }
+
+    /// Whether it asks for columns that only this program's rows have.
+    pub(super) fn is_of_own_rows(&self) -> bool {
+        matches!(self, Self::RmseSlope {} | Self::Checksum {} | Self::Forecast { .. } | Self::Speedup { column: None, .. })
+    }
+}
+
+/// The statistics of another program's rows.
+pub(super) const OF_PLAIN_ROWS: &str =
+    "value, count, paired-ratio, speedup with a column, exponent, mean-ratio, rank-correlation";
+
 /// The names of the statistics that are not of rows.
 const OTHERS: [&str; 2] = ["case", "guard"];
 
 impl Statistic {
+    /// The columns that it asks for, each with the field that names it.
+    pub(super) fn columns(&self) -> Vec<(&'static str, &str)> {
+        match self {
+            Self::OfRows { rows, kind, .. } => {
+                rows.columns().map(|column| ("rows", column)).chain(kind.columns()).collect()
+            }
+            Self::Case(_) | Self::Guard(_) => Vec::new(),
+        }
+    }
+
     /// The statistic of that name with these fields.
     pub(super) fn of(name: &str, fields: &Table) -> Result<Self> {
         let [case, guard] = OTHERS;

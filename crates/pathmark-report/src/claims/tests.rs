@@ -297,7 +297,7 @@ const EXCERPTS: [(&str, &str); 4] = [
 
 #[test]
 fn each_claim_appears_once_and_quotes_its_report() {
-    let reports = Report::all().unwrap();
+    let reports = Report::all(&Lab::built_in()).unwrap();
     let mut ids: Vec<u32> = reports.iter().flat_map(|report| &report.claims).map(|claim| claim.id).collect();
     ids.sort_unstable();
     assert_eq!(ids, (1..=85).collect::<Vec<u32>>());
@@ -313,7 +313,7 @@ fn each_claim_appears_once_and_quotes_its_report() {
 #[test]
 fn changes_are_listed_in_the_documentation() {
     let text = include_str!("../../../../docs/reports.md");
-    let reports = Report::all().unwrap();
+    let reports = Report::all(&Lab::built_in()).unwrap();
     let changed = reports.iter().flat_map(|report| &report.claims).filter(|claim| !claim.changed.is_empty());
     let listed = |id: u32| text.contains(&format!("* **Claim {id}**:")) || is_in_list(text, id);
     let missing: Vec<u32> = changed.map(|claim| claim.id).filter(|id| !listed(*id)).collect();
@@ -332,7 +332,7 @@ fn is_in_list(text: &str, id: u32) -> bool {
 #[test]
 fn each_query_asks_for_rows_of_an_experiment() {
     let lab = Lab::built_in();
-    let reports = Report::all().unwrap();
+    let reports = Report::all(&Lab::built_in()).unwrap();
     let (mut rows, mut unmet): (BTreeMap<String, Vec<Columns>>, Vec<String>) = (BTreeMap::new(), Vec::new());
     for claim in reports.iter().flat_map(|report| &report.claims) {
         let Ok(Test { statistic: Statistic::OfRows { experiment, rows: wanted, kind, .. }, .. }) = claim.test() else {
@@ -348,7 +348,7 @@ fn each_query_asks_for_rows_of_an_experiment() {
             _ => None,
         };
         if let Some(over) = other.filter(|_| !matches!(kind, Kind::MeanRatio { .. })) {
-            let shared = identity(wanted, over);
+            let shared = identity(wanted, over, &[]);
             let keys = |conditions: &Conditions| -> BTreeSet<Vec<String>> {
                 let rows = own.iter().filter(|row| conditions.admit(row));
                 rows.map(|row| shared.iter().map(|column| text(row, column)).collect()).collect()

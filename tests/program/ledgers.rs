@@ -1,0 +1,125 @@
+//! Ledgers from outside the program: `examples/ledgers`.
+
+use crate::program::{finish, in_memory, pathmark};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn example(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/ledgers").join(name)
+}
+
+fn verdicts(folder: &Path, ledger: &Path) -> Vec<Value> {
+    let ledger = ledger.display().to_string();
+    let told = finish(pathmark(folder, &["claims", ".", "--json", "--ledger", &ledger])).with_code(0).out;
+    serde_json::from_str(&told).unwrap()
+}
+
+/// Six runs of each command, as hyperfine exports them.
+fn hyperfine() -> Value {
+    let result = |program: &str, seconds: f64| {
+        let times: Vec<f64> = (0..6).map(|run| seconds * (1.0 + 0.01 * f64::from(run))).collect();
+        json!({ "command": format!("{program} 100000"), "mean": seconds, "times": times, "exit_codes": [0], "parameters": { "n": "100000" } })
+    };
+    json!({ "results": [result("quick", 0.01), result("bubble", 1.1)] })
+}
+
+/// Samples of a function that takes 2 ns per element, as criterion leaves them.
+fn criterion(folder: &Path) {
+    for n in [100, 1000, 10000] {
+        let own = folder.join(format!("sort/radix/{n}/new"));
+        fs::create_dir_all(&own).unwrap();
+        let names = json!({ "group_id": "sort", "function_id": "radix", "value_str": n.to_string() });
+        let iterations = [10.0, 20.0, 30.0];
+        let times: Vec<f64> = iterations.iter().map(|own| own * 2.0 * f64::from(n) * (1.0 + 0.001 * own)).collect();
+        let sample = json!({ "sampling_mode": "Linear", "iters": iterations, "times": times });
+        fs::write(own.join("benchmark.json"), names.to_string()).unwrap();
+        fs::write(own.join("sample.json"), sample.to_string()).unwrap();
+    }
+}
+
+/// Rows of hyperfine and criterion give verdicts: 1.1 s over 10 ms is 110, and the times are linear.
+#[test]
+fn rows_of_other_harnesses_are_judged() {
+    if !Command::new("python3").arg("--version").output().is_ok_and(|output| output.status.success()) {
+        eprintln!("python3 is missing: the converters are not run");
+        return;
+    }
+    let folder = in_memory();
+    fs::write(folder.path().join("times.json"), hyperfine().to_string()).unwrap();
+    criterion(&folder.path().join("criterion"));
+    for (script, input, rows) in
+        [("from_hyperfine.py", "times.json", "commands.csv"), ("from_criterion.py", "criterion", "functions.csv")]
+    {
+        let output = Command::new("python3").arg(example(script)).arg(input).current_dir(folder.path()).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        fs::write(folder.path().join(rows), output.stdout).unwrap();
+    }
+    let told = verdicts(folder.path(), &example("sorting.toml"));
+    let of = |key: &str| told.iter().map(|row| row[key].as_str().unwrap()).collect::<Vec<_>>();
+    assert_eq!(of("verdict"), ["confirmed", "confirmed"], "{told:?}");
+    assert!(of("measured")[0].starts_with("110"), "{told:?}");
+    // A wrong row is told with file, line, field and value.
+    let path = folder.path().join("commands.csv");
+    fs::write(&path, fs::read_to_string(&path).unwrap().replacen(",0,0.01", ",0,fast", 1)).unwrap();
+    let ledger = example("sorting.toml").display().to_string();
+    let error = finish(pathmark(folder.path(), &["claims", ".", "--ledger", &ledger])).with_code(2).err;
+    assert!(error.contains("commands.csv:2:") && error.contains("seconds = fast"), "{error}");
+}
+
+/// A sentence of a library's README, by rows of `bursts`.
+#[test]
+fn rows_of_bursts_are_a_table_like_any_other() {
+    let folder = in_memory();
+    let head = "process,round,place,strategy,threads,regions,jobs,job_s,gap_s,slept_s,wake_s,wake_p95_s,region_s,idle_processors,started";
+    let row = |process: u32, strategy: &str, region_s: f64| {
+        let noise = 1.0 + 0.01 * f64::from(process);
+        format!("{process},0,0,{strategy},2,100,8,5e-6,0.00002,0,{},0,{},0.1,0\n", 0.1 * region_s * noise, region_s)
+    };
+    let rows: String =
+        (0..6).flat_map(|process| [row(process, "rayon", 28e-6), row(process, "forkunion", 2e-6)]).collect();
+    fs::create_dir(folder.path().join("bursts")).unwrap();
+    fs::write(folder.path().join("bursts/bursts.csv"), format!("{head}\n{rows}")).unwrap();
+    let told = verdicts(folder.path(), &example("forkunion.toml"));
+    assert_eq!((&told[0]["verdict"], &told[0]["measured"]), (&json!("confirmed"), &json!("14")), "{told:?}");
+    assert_eq!(told[1]["verdict"], "confirmed", "{told:?}");
+}
+
+/// The fifth report is judged by committed rows.
+#[test]
+fn a_report_from_outside_is_judged_by_the_committed_rows() {
+    let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/reports");
+    let told = verdicts(&results, &example("kth.toml"));
+    assert!(told.iter().all(|row| ["confirmed", "refuted", "open"].iter().any(|name| row["verdict"] == *name)), "{told:?}");
+}
+
+/// Numbers of claims are unique over the ledgers of a folder, and a plan names a command for each claim.
+#[test]
+fn a_folder_of_ledgers_is_read_together_and_planned() {
+    let folder = in_memory();
+    fs::create_dir(folder.path().join("papers")).unwrap();
+    let ledger = |report: &str, id: u32, experiment: &str| {
+        format!(
+            "report = \"{report}\"\ntitle = \"T\"\nabout = \"A.\"\n[[claim]]\nid = {id}\nclaim = \"Samples.\"\n\
+             experiment = \"{experiment}\"\nstatistic = \"value\"\ncolumn = \"spp\"\nlevel = 0.95\n"
+        )
+    };
+    let write = |name: &str, text: &str| fs::write(folder.path().join("papers").join(name), text).unwrap();
+    write("a.toml", &ledger("a", 1, "timelines"));
+    write("b.toml", &ledger("b", 1, "no-such"));
+    let refused = || finish(pathmark(folder.path(), &["claims", ".", "--ledger", "papers"])).with_code(2).err;
+    assert!(refused().contains("b.toml") && refused().contains("id = 1"), "{}", refused());
+    write("b.toml", &ledger("a", 2, "no-such"));
+    assert!(refused().contains("report = a"), "{}", refused());
+    write("b.toml", &ledger("b", 2, "no-such"));
+    let plan = ["claims", ".", "--ledger", "papers", "--plan", "--json"];
+    let told: Vec<Value> = serde_json::from_str(&finish(pathmark(folder.path(), &plan)).with_code(0).out).unwrap();
+    assert_eq!(told[0]["command"], "pathmark run timelines --reports", "{told:?}");
+    assert!(told[0]["seconds"].as_f64().unwrap() > 0.0 && told[0]["bytes"].as_u64().unwrap() > 0, "{told:?}");
+    assert!(told[1]["command"] == "" && told[1]["why"].as_str().unwrap().contains("no-such"), "{told:?}");
+    let text = finish(pathmark(folder.path(), &["claims", ".", "--ledger", "papers", "--markdown"])).with_code(0).out;
+    assert!(text.starts_with("# The claims of papers\n"), "{text}");
+    fs::create_dir(folder.path().join("empty")).unwrap();
+    assert!(finish(pathmark(folder.path(), &["claims", ".", "--ledger", "empty"])).with_code(2).err.contains(".toml"));
+}
