@@ -185,6 +185,9 @@ fn repetitions_go_on_until_it_is_known() {
     let found = json(&run(folder.path(), &compared, 0));
     assert_eq!(found["sequential"], true);
     assert!(found["cells"].as_array().unwrap().iter().all(|cell| cell["change"] == "same"), "{found}");
+    let markdown = compared.map(|word| if word == "--json" { "--markdown" } else { word });
+    let markdown = run(folder.path(), &markdown, 0).out;
+    assert_eq!(markdown.lines().filter(|line| line.contains("| same | ")).count(), 5, "{markdown}");
     // Fewer repetitions decide nothing, and neither does a time limit of zero.
     until("few", &["--until", huge, "--repetitions", "10"], 0);
     assert_eq!(rows(&folder.path().join("few/tiny")).len(), 5 * 10 * 2);

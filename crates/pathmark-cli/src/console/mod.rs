@@ -1,5 +1,6 @@
 //! The terminal: results, messages and progress, and the end if memory is refused.
 
+pub(crate) mod markdown;
 mod out_of_memory;
 pub(crate) mod output;
 mod progress;

@@ -2,6 +2,7 @@
 
 use super::prelude::*;
 use super::run::note_doubts;
+use crate::console::markdown;
 use crate::error::printable;
 use crate::experiment::{
     Across, CellDiff, Change, Compared, CountDiff, CountDiffs, Diff, FailedCell, Lost, count_diff, diff, parse_share,
@@ -29,6 +30,9 @@ pub(crate) struct Arguments {
     /// Print the comparison as one JSON object
     #[arg(long)]
     json: bool,
+    /// Print the comparison of times as tables in Markdown
+    #[arg(long, conflicts_with_all = ["json", "counts"])]
+    markdown: bool,
 }
 
 #[derive(Args)]
@@ -66,7 +70,8 @@ pub(super) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     if arguments.json {
         print_json(&object(&found, limit, diff_object))?;
     } else {
-        print(&by_experiment(&found, table).join("\n"))?;
+        let shown = if arguments.markdown { in_markdown } else { table };
+        print(&by_experiment(&found, shown).join("\n"))?;
         let counts = [Change::Slower, Change::Faster, Change::Same, Change::Undecided]
             .map(|change| format!("{} {}", count(change), change.name()));
         let percent = 100.0 * limit;
@@ -185,20 +190,33 @@ fn remark(name: &str, found: &Diff, console: &Console) {
     note_doubts(&found.doubts, console);
 }
 
+const HEADS: [&str; 6] = ["new/old", "interval", "change", "old", "new", "cell"];
+
 fn table(found: &Diff) -> Vec<String> {
-    let head = format!("{:>8} {:>16} {:<9}  {:>9}  {:>9}  cell", "new/old", "interval", "change", "old", "new");
-    let line = |cell: &CellDiff| {
-        let interval = cell.interval.map_or_else(|| "-".to_string(), |i| format!("{:.3} to {:.3}", i.low, i.high));
-        let CellDiff { ratio, old_s, new_s, change, .. } = cell;
-        let (change, cell) = (change.name(), printable(&cell.cell));
-        format!("{ratio:>8.3} {interval:>16} {change:<9}  {:>6.1} ms  {:>6.1} ms  {cell}", 1e3 * old_s, 1e3 * new_s)
+    let line = |[ratio, interval, change, old, new, cell]: [String; 6]| {
+        format!("{ratio:>8} {interval:>16} {change:<9}  {old:>9}  {new:>9}  {cell}")
     };
-    let lost =
-        |cell: &str, how: &str| format!("{:>8} {:>16} {how:<9}  {:>9}  {:>9}  {}", "-", "-", "-", "-", printable(cell));
+    std::iter::once(HEADS.map(str::to_string)).chain(cells(found)).map(line).collect()
+}
+
+/// A table between blank lines: Markdown needs them.
+fn in_markdown(found: &Diff) -> Vec<String> {
+    vec![format!("\n{}\n", markdown::table(HEADS, cells(found)))]
+}
+
+/// Ratio, interval, change, both times and the name of each cell, and of those that are lost.
+fn cells(found: &Diff) -> Vec<[String; 6]> {
+    let of = |cell: &CellDiff| {
+        let interval = cell.interval.map_or_else(|| "-".to_string(), |i| format!("{:.3} to {:.3}", i.low, i.high));
+        let [old, new] = [cell.old_s, cell.new_s].map(|seconds| format!("{:.1} ms", 1e3 * seconds));
+        let name = printable(&cell.cell).into_owned();
+        [format!("{:.3}", cell.ratio), interval, cell.change.name().to_string(), old, new, name]
+    };
+    let lost = |cell: &str, how: &str| ["-", "-", how, "-", "-", &printable(cell)].map(str::to_string);
     let Lost { missing, failed } = &found.lost;
     let missing = missing.iter().map(|cell| lost(cell, "missing"));
     let failed = failed.iter().map(|cell| lost(&cell.cell, "failed"));
-    std::iter::once(head).chain(found.cells.iter().map(line)).chain(missing).chain(failed).collect()
+    found.cells.iter().map(of).chain(missing).chain(failed).collect()
 }
 
 fn diff_object(found: &Diff) -> Value {

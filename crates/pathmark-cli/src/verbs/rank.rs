@@ -2,6 +2,7 @@
 
 use super::prelude::*;
 use super::run::note_doubts;
+use crate::console::markdown;
 use crate::error::printable;
 use crate::experiment::{ImageRanking, Place, Ranking, ranking};
 
@@ -16,7 +17,14 @@ pub(crate) struct Arguments {
     /// Print the ranking as one JSON object
     #[arg(long)]
     json: bool,
+    /// Print the ranking as tables in Markdown
+    #[arg(long, conflicts_with = "json")]
+    markdown: bool,
 }
+
+/// The meaning of the letters.
+const LETTERS: &str =
+    "Schedules that share a letter cannot be told apart; all other orders hold together with 95 % confidence.";
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     if arguments.folder.exists() && !arguments.folder.is_dir() {
@@ -27,11 +35,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     if arguments.json {
         print_json(&object(&found))?;
     } else {
-        let tables: Vec<String> = found.images.iter().map(table).collect();
-        print(&tables.join("\n\n"))?;
-        print(
-            "\nSchedules that share a letter cannot be told apart; all other orders hold together with 95 % confidence.",
-        )?;
+        let shown = if arguments.markdown { in_markdown } else { table };
+        let tables: Vec<String> = found.images.iter().map(shown).collect();
+        print(&format!("{}\n\n{LETTERS}", tables.join("\n\n")))?;
     }
     if found.images.iter().any(|image| image.part[1] > 1) {
         console
@@ -61,28 +67,48 @@ fn table(image: &ImageRanking) -> String {
     let width = image.places.iter().map(|place| letters(&place.groups).len()).max().unwrap_or(0).max("groups".len());
     let head = format!("{:>8} {:>16} {:>11}  {:width$}  schedule", "ratio", "interval", "median", "groups");
     let line = |place: &Place| {
-        let interval = place.interval.map_or_else(|| "-".to_string(), |i| format!("{:.3} to {:.3}", i.low, i.high));
-        let ratio = place.ratio.map_or_else(|| "-".to_string(), |ratio| format!("{ratio:.3}"));
-        let (median_ms, schedule) = (1e3 * place.median_s, printable(&place.schedule));
-        format!("{ratio:>8} {interval:>16} {median_ms:>8.1} ms  {:width$}  {schedule}", letters(&place.groups))
+        let [ratio, interval, median, groups, schedule] = cells(place);
+        format!("{ratio:>8} {interval:>16} {median:>11}  {groups:width$}  {schedule}")
     };
-    let ImageRanking { fastest, compared, places, part: [part, parts], .. } = image;
+    let lines = [title(image), head].into_iter().chain(image.places.iter().map(line));
+    lines.chain([fastest(image)]).collect::<Vec<_>>().join("\n")
+}
+
+fn in_markdown(image: &ImageRanking) -> String {
+    let heads = ["ratio", "interval", "median", "groups", "schedule"];
+    let table = markdown::table(heads, image.places.iter().map(cells));
+    format!("### {}\n\n{table}\n\n{}", title(image), fastest(image))
+}
+
+/// Ratio, interval, median, letters and name of a schedule.
+fn cells(place: &Place) -> [String; 5] {
+    let interval = place.interval.map_or_else(|| "-".to_string(), |i| format!("{:.3} to {:.3}", i.low, i.high));
+    let ratio = place.ratio.map_or_else(|| "-".to_string(), |ratio| format!("{ratio:.3}"));
+    let median = format!("{:.1} ms", 1e3 * place.median_s);
+    [ratio, interval, median, letters(&place.groups), printable(&place.schedule).into_owned()]
+}
+
+fn title(image: &ImageRanking) -> String {
+    let [part, parts] = image.part;
+    let of_part = if parts > 1 { format!(", part {part} of {parts}") } else { String::new() };
+    format!("{}{of_part}", printable(&image.image))
+}
+
+/// Which schedules may be the fastest, in a sentence.
+fn fastest(image: &ImageRanking) -> String {
+    let ImageRanking { fastest, compared, places, .. } = image;
     let of = if *compared < places.len() {
         format!("{compared} (the matrix of the others has fewer repetitions)")
     } else {
         "them".to_string()
     };
-    let fastest = match (*compared, fastest.len()) {
+    match (*compared, fastest.len()) {
         _ if places.len() == 1 => "no other schedule was measured with it".to_string(),
         (0 | 1, _) => "too few schedules have all repetitions to determine the fastest".to_string(),
         (_, 0) => format!("each of {of} is slower than another one"),
         (all, left) if left == all => format!("any of {of} may be the fastest"),
         _ => format!("with 95 % confidence, the fastest of {of} is among: {}", printable(&fastest.join(", "))),
-    };
-    let of_part = if *parts > 1 { format!(", part {part} of {parts}") } else { String::new() };
-    let lines =
-        [format!("{}{of_part}", printable(&image.image)), head].into_iter().chain(image.places.iter().map(line));
-    lines.chain([fastest]).collect::<Vec<_>>().join("\n")
+    }
 }
 
 fn object(found: &Ranking) -> Value {
