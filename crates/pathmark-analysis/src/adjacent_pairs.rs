@@ -10,6 +10,7 @@
 //! many processes a few may be disturbed for their whole life; from sixteen on, the eighth at either end does not count
 //! ([`centre`]).
 
+use crate::agreement::LogRatio;
 use crate::interval::{Estimate, Interval, is_level};
 use crate::mean::{Moments, t_quantile};
 use crate::quantile::median;
@@ -58,6 +59,13 @@ pub fn paired_ratio(processes: &[Vec<f64>], level: f64) -> Option<PairedRatio> {
     let ratio = Estimate { value: libm::exp(value), interval };
     let pairs = processes.iter().map(Vec::len).sum();
     Some(PairedRatio { ratio, pairs, processes: processes.len(), spread: spread_of(&logarithms, 1.0)? })
+}
+
+/// The logarithm of the ratio with its error; `None` as for [`paired_ratio`].
+pub fn log_ratio(processes: &[Vec<f64>]) -> Option<LogRatio> {
+    let logarithms = logarithms(processes).filter(|all| all.len() >= FEWEST_PROCESSES)?;
+    let Centre { value, standard_error, degrees_of_freedom } = centre_of(&logarithms)?;
+    Some(LogRatio { value, standard_error, degrees_of_freedom: degrees_of_freedom as f64, units: processes.len() })
 }
 
 /// The pairs of each process, from ratios with the numbers of their processes.

@@ -5,6 +5,7 @@
 
 pub mod aa_test;
 pub mod adjacent_pairs;
+pub mod agreement;
 pub mod autocorrelation;
 pub mod balance;
 pub mod bootstrap;

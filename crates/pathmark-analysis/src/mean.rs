@@ -66,7 +66,7 @@ pub fn t_quantile(level: f64, degrees_of_freedom: usize) -> Option<f64> {
 }
 
 /// [`t_quantile`] for degrees of freedom that are no whole number.
-fn fractional_t_quantile(level: f64, degrees_of_freedom: f64) -> Option<f64> {
+pub(crate) fn fractional_t_quantile(level: f64, degrees_of_freedom: f64) -> Option<f64> {
     let law = StudentsT::new(0.0, 1.0, degrees_of_freedom).ok().filter(|_| is_level(level))?;
     Some(law.inverse_cdf(0.5 + 0.5 * level)).filter(|t| t.is_finite())
 }

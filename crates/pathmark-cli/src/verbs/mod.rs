@@ -18,6 +18,7 @@ mod ranks;
 mod renamed;
 mod render;
 mod report;
+mod replicate;
 mod reproduce;
 mod rounds;
 mod run;
@@ -67,6 +68,8 @@ pub(super) enum Verb {
     Bursts(bursts::Arguments),
     /// Judge the claims of the four reports, or of a ledger of your own, by the results in a folder.
     Claims(claims::Arguments),
+    /// Measure somebody's rows again on this machine: which of their ratios and images come out here, too?
+    Replicate(replicate::Arguments),
     /// Write a commented starter file for an experiment, a scene or a ledger of claims.
     New(new::Arguments),
     /// Examine this machine before a sweep: what disturbs measurements, and which differences can be seen?
@@ -98,6 +101,7 @@ impl Verb {
             Self::Price(arguments) => price::run(&arguments, lab, console),
             Self::Bursts(arguments) => bursts::run(&arguments, lab, console),
             Self::Claims(arguments) => claims::run(&arguments, lab),
+            Self::Replicate(arguments) => replicate::run(&arguments, lab, console),
             Self::Report(arguments) => report::run(&arguments, lab),
             Self::Simulate(arguments) => simulate::run(&arguments, lab, console),
             Self::Image(what) => what.run(lab, console),

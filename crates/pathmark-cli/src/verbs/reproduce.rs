@@ -253,6 +253,11 @@ impl Plans {
     }
 }
 
+/// Prints the plan of some sweeps.
+pub(super) fn print_plans(lab: &Lab, sweeps: &[Sweep<'_>]) -> Result<()> {
+    Plans::new(lab, sweeps)?.print(0)
+}
+
 /// Prints the plan of one experiment, and what pairs of its comparisons reach.
 pub(super) fn print_with_power(lab: &Lab, sweep: &Sweep<'_>) -> Result<()> {
     Plans::new(lab, std::slice::from_ref(sweep))?.print(0)?;

@@ -13,7 +13,7 @@
 use super::diff::parse_share;
 use super::{Cell, Definition, Profile};
 use crate::error::{Error, InputError, Result};
-use crate::measure::SETTINGS;
+use crate::measure::{SERIAL, SETTINGS};
 use serde::Deserialize;
 use std::collections::{BTreeMap, HashSet};
 
@@ -59,8 +59,21 @@ fn matches(selection: &Selection, cell: &Cell) -> Result<bool> {
 impl Comparisons {
     /// The comparisons of these cells; curves are never compared.
     pub(super) fn of(definition: &Definition, profile: Profile, cells: &[Cell]) -> Result<Self> {
+        Self::of_entries(&definition.compare, definition, profile, cells)
+    }
+
+    /// The comparisons of these cells, or if the experiment names none, those with the serial runs of each image.
+    pub(super) fn of_any(definition: &Definition, profile: Profile, cells: &[Cell]) -> Result<Self> {
+        if !definition.compare.is_empty() {
+            return Self::of(definition, profile, cells);
+        }
+        let with = BTreeMap::from([("strategy".to_string(), vec![toml::Value::from(SERIAL)])]);
+        Self::of_entries(&[Compare { what: Selection::new(), with, goal: None }], definition, profile, cells)
+    }
+
+    fn of_entries(entries: &[Compare], definition: &Definition, profile: Profile, cells: &[Cell]) -> Result<Self> {
         let mut pairs: Vec<Comparison> = Vec::new();
-        for entry in &definition.compare {
+        for entry in entries {
             let located = |error| match error {
                 Error::Input(input) => definition.located(profile, *input),
                 other => other,

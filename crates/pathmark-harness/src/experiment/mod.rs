@@ -31,6 +31,7 @@ mod profile;
 mod ranking;
 mod records_file;
 mod reference;
+mod replication;
 mod run_file;
 mod running;
 #[cfg(test)]
@@ -69,6 +70,7 @@ pub use reference::{
     HalfFile, Reference, ReferenceError, check_until, reference_seed, refine_reference, render_reference,
     wanted_references,
 };
+pub use replication::{JOINT_LEVEL, Reproduction, Statement, Statements, definition_of, judge_together};
 pub use run_file::{MACHINE, RunFile, read_run_file};
 pub use sides::{Compared, FailedCell, Lost};
 pub use stopping_rule::{Goal, MOST_REPETITIONS, StoppingRule};
