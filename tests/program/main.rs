@@ -25,6 +25,7 @@ mod price;
 mod program;
 mod rank;
 mod ranks;
+mod replicate;
 mod resume;
 #[path = "../support/scene_text.rs"]
 mod scene_text;

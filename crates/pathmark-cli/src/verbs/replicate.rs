@@ -13,6 +13,7 @@ use crate::experiment::{
 };
 use crate::lock::Sharing;
 use crate::measure::available_threads;
+use std::collections::BTreeSet;
 
 /// `pathmark replicate results/reports --plan`
 #[derive(Args)]
@@ -51,13 +52,13 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     }
     let mut runs = Vec::new();
     for folder in folders(&arguments.theirs, &arguments.experiments)? {
-        let (definition, profile) = definition_of(lab, &folder)?;
+        let (definition, profile, theirs) = definition_of(lab, &folder)?;
         if let Some((_, takes)) = definition.missing_feature() {
             console.note(&format!("{} is left out: it needs {takes}", definition.name));
             continue;
         }
-        let Some(filters) = runnable(&definition, profile)? else {
-            console.note(&format!("{} is left out: all of its cells use more threads than there are processors here", definition.name));
+        let Some(filters) = runnable(&definition, profile, theirs)? else {
+            console.note(&format!("{} is left out: all of its cells use more processors than there are here", definition.name));
             continue;
         };
         let options = Options {
@@ -69,10 +70,10 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
             command: command_line(),
             ..Options::default()
         };
-        runs.push((folder, definition, options));
+        runs.push((folder, definition, options, theirs));
     }
     let mut files = Files::default();
-    let sweeps = runs.iter().map(|(_, definition, options)| Sweep::new(definition, options, &mut files));
+    let sweeps = runs.iter().map(|(_, definition, options, _)| Sweep::new(definition, options, &mut files));
     let sweeps = sweeps.collect::<Result<Vec<_>>>()?;
     if arguments.plan {
         return print_plans(lab, &sweeps);
@@ -86,8 +87,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
         tell_left_out(&summary.left_out, console);
     }
     let mut all = Vec::new();
-    for (theirs, definition, options) in &runs {
+    for (theirs, definition, options, processors) in &runs {
         let here = arguments.out.join(&definition.name);
+        let absent = |cell: &Cell| absent(cell, *processors);
         all.push(Statements::of((definition, options.profile), [theirs, &here], absent)?);
     }
     let statements = judge_together(all, margin);
@@ -132,21 +134,21 @@ fn folders(theirs: &Path, wanted: &[String]) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Why a cell cannot be replicated here: it uses more threads than this machine has processors.
-fn absent(cell: &Cell) -> Option<String> {
-    let (wanted, here) = (cell.settings.threads, available_threads());
-    (wanted > here).then(|| format!("{} on {}", counted(wanted, "thread"), counted(here, "processor")))
+/// Why a cell cannot be replicated here: on their machine it used more processors than there are here.
+fn absent(cell: &Cell, theirs: usize) -> Option<String> {
+    let (used, here) = (cell.settings.threads.min(theirs), available_threads());
+    (used > here).then(|| format!("{} instead of {here}", counted(used, "processor")))
 }
 
 /// The filter that leaves the cells which can run here; `None` if there are none.
-fn runnable(definition: &Definition, profile: Profile) -> Result<Option<Vec<String>>> {
+fn runnable(definition: &Definition, profile: Profile, theirs: usize) -> Result<Option<Vec<String>>> {
     let cells = definition.cells(profile)?;
-    let here: std::collections::BTreeSet<usize> =
-        cells.iter().filter(|cell| absent(cell).is_none()).map(|cell| cell.settings.threads).collect();
+    let runs = |cell: &&Cell| absent(cell, theirs).is_none();
+    let here: BTreeSet<usize> = cells.iter().filter(runs).map(|cell| cell.settings.threads).collect();
     if here.is_empty() {
         return Ok(None);
     }
-    if cells.iter().all(|cell| absent(cell).is_none()) {
+    if cells.iter().all(|cell| runs(&cell)) {
         return Ok(Some(Vec::new()));
     }
     let here: Vec<String> = here.iter().map(usize::to_string).collect();

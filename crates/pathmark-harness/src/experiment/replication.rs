@@ -17,8 +17,8 @@ use std::sync::Arc;
 /// Confidence that no verdict *not reproduced* is wrong, over all statements together.
 pub const JOINT_LEVEL: f64 = 0.95;
 
-/// The definition and the profile of somebody's rows.
-pub fn definition_of(lab: &Arc<Lab>, theirs: &Path) -> Result<(Definition, Profile)> {
+/// The definition and the profile of somebody's rows, and the processors of their machine.
+pub fn definition_of(lab: &Arc<Lab>, theirs: &Path) -> Result<(Definition, Profile, usize)> {
     let path = theirs.join("experiment.toml");
     let name = theirs.canonicalize().unwrap_or_else(|_| theirs.to_path_buf());
     let name = name.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -28,7 +28,7 @@ pub fn definition_of(lab: &Arc<Lab>, theirs: &Path) -> Result<(Definition, Profi
     let profile = Profile::from_name(&run.profile).ok_or_else(|| {
         InputError::new("profile", &run.profile, "is no profile").in_file(path.display().to_string(), None)
     })?;
-    Ok((definition, profile))
+    Ok((definition, profile, run.machine.processors))
 }
 
 /// A statement of somebody's rows, and what the rows here say about it.

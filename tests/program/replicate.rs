@@ -1,0 +1,112 @@
+//! `replicate`: do somebody's ratios and images come out here, too?
+
+use crate::experiment::write_tiny;
+use crate::program::{finish, in_memory, pathmark};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+/// An experiment of two schedules in pairs.
+const PAIRED: &str = r#"
+title = "t"
+question = "q"
+figures = []
+
+[[compare]]
+with = { strategy = ["serial"] }
+
+[matrix]
+scene = ["cornell"]
+estimator = ["bsdf"]
+spp = [4]
+seed = [1]
+strategy = ["serial", "static-blocks"]
+threads = [1]
+decomposition = ["tiles:8x8"]
+
+[quick]
+size = [24, 16]
+repetitions = 4
+pairs = 2
+"#;
+
+/// Multiplies the seconds of a strategy in a file of rows, and returns the text.
+fn bent(path: &Path, strategy: &str, factor: f64, noise: impl Fn(usize) -> f64) {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let heads = reader.headers().unwrap().clone();
+    let at = |name: &str| heads.iter().position(|head| head == name).unwrap();
+    let (own, seconds) = (at("strategy"), at("makespan_s"));
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    let mut writer = csv::Writer::from_path(path).unwrap();
+    writer.write_record(&heads).unwrap();
+    for (index, row) in rows.iter().enumerate() {
+        let changed = row.iter().enumerate().map(|(column, field)| {
+            let factor = if &row[own] == strategy { factor } else { 1.0 };
+            if column == seconds { (0.01 * factor * noise(index)).to_string() } else { field.to_string() }
+        });
+        writer.write_record(changed).unwrap();
+    }
+    writer.flush().unwrap();
+}
+
+fn judged(folder: &Path, more: &[&str], code: i32) -> Vec<Value> {
+    let all = [&["replicate", "theirs", "--out", "here", "--resume", "--json"], more].concat();
+    serde_json::from_str(&finish(pathmark(folder, &all)).with_code(code).out).unwrap()
+}
+
+fn verdicts(told: &[Value]) -> Vec<&str> {
+    told.iter().map(|own| own["verdict"]["is"].as_str().unwrap()).collect()
+}
+
+/// Rows with invented times: the same ratio is reproduced, one that is bent by 20 % is not, few noisy rows cannot tell; another
+/// checksum is not reproduced.
+#[test]
+fn ratios_and_images_are_judged_and_seconds_are_not() {
+    let folder = in_memory();
+    write_tiny(folder.path(), PAIRED);
+    finish(pathmark(folder.path(), &["run", "tiny.toml", "--out", "theirs"])).with_code(0);
+    finish(pathmark(folder.path(), &["replicate", "theirs", "--out", "here", "--plan"])).with_code(0);
+    assert!(!folder.path().join("here").exists());
+    // Both ratios are of real times of some microseconds, so the first run may have any verdict.
+    let first = pathmark(folder.path(), &["replicate", "theirs", "--out", "here"]);
+    let out = finish(first);
+    assert!(out.out.contains("# Replication"), "{} {}", out.out, out.err);
+    let (theirs, here) = ("theirs/tiny/records.csv", "here/tiny/records.csv");
+    let [theirs, here] = [theirs, here].map(|file| folder.path().join(file));
+    let even = |index: usize| 1.0 + 0.001 * (index % 3) as f64;
+    bent(&theirs, "static-blocks", 1.5, even);
+    // Twice as slow in all, which is no statement.
+    bent(&here, "static-blocks", 1.52, |index| 2.0 * even(index + 1));
+    let told = judged(folder.path(), &[], 0);
+    assert_eq!(verdicts(&told), ["reproduced", "reproduced"], "{told:?}");
+    assert!((told[0]["theirs"].as_f64().unwrap() - 1.5).abs() < 0.01, "{told:?}");
+    bent(&here, "static-blocks", 1.2 * 1.5, even);
+    assert_eq!(verdicts(&judged(folder.path(), &[], 1)), ["not-reproduced", "reproduced"]);
+    assert_eq!(verdicts(&judged(folder.path(), &["--margin", "30%"], 0)), ["reproduced", "reproduced"]);
+    bent(&here, "static-blocks", 1.5, |index| 1.0 + 0.3 * (index % 5) as f64);
+    let told = judged(folder.path(), &[], 0);
+    assert_eq!(verdicts(&told), ["cannot-tell", "reproduced"], "{told:?}");
+    let text = fs::read_to_string(folder.path().join("here/REPLICATION.md")).unwrap();
+    assert!(text.contains("cannot tell: ") && text.contains("more repetition"), "{text}");
+    let rows = fs::read_to_string(&theirs).unwrap();
+    let checksum = csv::Reader::from_path(&theirs).unwrap().deserialize::<std::collections::HashMap<String, String>>();
+    let checksum = checksum.map(Result::unwrap).next().unwrap().remove("checksum").unwrap();
+    fs::write(&theirs, rows.replace(&checksum, "sha256:0123456789abcdef")).unwrap();
+    let told = finish(pathmark(folder.path(), &["replicate", "theirs", "--out", "here", "--resume"])).with_code(1);
+    assert!(told.err.contains("1 statement not reproduced"), "{}", told.err);
+}
+
+#[test]
+fn wrong_folders_and_margins_are_refused() {
+    let folder = in_memory();
+    fs::create_dir(folder.path().join("empty")).unwrap();
+    for (arguments, told) in [
+        (&["replicate", "nowhere"][..], "nowhere"),
+        (&["replicate", "empty"], "holds no experiment"),
+        (&["replicate", "empty", "--margin", "0%"], "margin"),
+        (&["replicate", "empty", "--margin", "wide"], "margin"),
+    ] {
+        let said = finish(pathmark(folder.path(), arguments)).with_code(2).err;
+        assert!(said.contains(told), "{said}");
+    }
+}
