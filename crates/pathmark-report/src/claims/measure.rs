@@ -300,7 +300,8 @@ pub(super) fn identity<'a>(rows: &Conditions, over: &Conditions, settings: &'a [
     let named: BTreeSet<&str> = rows.columns().chain(over.columns()).collect();
     let followers = FOLLOWERS.iter().filter(|(column, _)| named.contains(column)).flat_map(|(_, others)| *others);
     let free: BTreeSet<&str> = named.iter().copied().chain(followers.copied()).collect();
-    let own = image_columns().chain(schedule_columns()).chain(settings.iter().map(String::as_str));
+    let known = image_columns().chain(schedule_columns()).map(|column| -> &'a str { column });
+    let own = known.chain(settings.iter().map(String::as_str));
     own.filter(|column| !free.contains(column)).collect()
 }
 
