@@ -52,7 +52,8 @@ fn rows_of_other_harnesses_are_judged() {
     for (script, input, rows) in
         [("from_hyperfine.py", "times.json", "commands.csv"), ("from_criterion.py", "criterion", "functions.csv")]
     {
-        let output = Command::new("python3").arg(example(script)).arg(input).current_dir(folder.path()).output().unwrap();
+        let output =
+            Command::new("python3").arg(example(script)).arg(input).current_dir(folder.path()).output().unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         fs::write(folder.path().join(rows), output.stdout).unwrap();
     }
@@ -91,7 +92,10 @@ fn rows_of_bursts_are_a_table_like_any_other() {
 fn a_report_from_outside_is_judged_by_the_committed_rows() {
     let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/reports");
     let told = verdicts(&results, &example("kth.toml"));
-    assert!(told.iter().all(|row| ["confirmed", "refuted", "open"].iter().any(|name| row["verdict"] == *name)), "{told:?}");
+    assert!(
+        told.iter().all(|row| ["confirmed", "refuted", "open"].iter().any(|name| row["verdict"] == *name)),
+        "{told:?}"
+    );
 }
 
 /// Numbers of claims are unique over the ledgers of a folder, and a plan names a command for each claim.

@@ -40,7 +40,10 @@ fn schedules_of_one_speed_share_a_group_and_others_do_not() {
     assert!(printed.out.contains("ratio") && printed.out.lines().any(|line| line.contains("  c ")), "{}", printed.out);
     assert!(!printed.err.contains("--repetitions"), "{}", printed.err);
     let markdown = run(folder.path(), &["rank", "ranked", "--markdown"], 0).out;
-    assert!(markdown.contains("| ratio | interval | median | groups | schedule |\n|--:|--:|--:|--|--|\n"), "{markdown}");
+    assert!(
+        markdown.contains("| ratio | interval | median | groups | schedule |\n|--:|--:|--:|--|--|\n"),
+        "{markdown}"
+    );
     assert_eq!(markdown.lines().filter(|line| line.starts_with("| ")).count(), 1 + 5, "{markdown}");
 }
 

@@ -3,6 +3,7 @@
 use crate::experiment::write_tiny;
 use crate::program::{finish, in_memory, pathmark};
 use serde_json::Value;
+use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
@@ -89,8 +90,9 @@ fn ratios_and_images_are_judged_and_seconds_are_not() {
     let text = fs::read_to_string(folder.path().join("here/REPLICATION.md")).unwrap();
     assert!(text.contains("cannot tell: ") && text.contains("more repetition"), "{text}");
     let rows = fs::read_to_string(&theirs).unwrap();
-    let checksum = csv::Reader::from_path(&theirs).unwrap().deserialize::<std::collections::HashMap<String, String>>();
-    let checksum = checksum.map(Result::unwrap).next().unwrap().remove("checksum").unwrap();
+    let mut reader = csv::Reader::from_path(&theirs).unwrap();
+    let mut first: HashMap<String, String> = reader.deserialize().next().unwrap().unwrap();
+    let checksum = first.remove("checksum").unwrap();
     fs::write(&theirs, rows.replace(&checksum, "sha256:0123456789abcdef")).unwrap();
     let told = finish(pathmark(folder.path(), &["replicate", "theirs", "--out", "here", "--resume"])).with_code(1);
     assert!(told.err.contains("1 statement not reproduced"), "{}", told.err);

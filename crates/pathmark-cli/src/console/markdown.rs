@@ -8,7 +8,8 @@ pub(crate) fn table<const N: usize>(heads: [&str; N], rows: impl IntoIterator<It
         format!("| {} |", cells.join(" | "))
     };
     let rows: Vec<[String; N]> = rows.into_iter().collect();
-    let is_number = |at: usize| rows.iter().all(|row| row[at].starts_with(|first: char| first.is_ascii_digit() || first == '-'));
+    let is_number =
+        |at: usize| rows.iter().all(|row| row[at].starts_with(|first: char| first.is_ascii_digit() || first == '-'));
     let rule: Vec<&str> = (0..N).map(|at| if is_number(at) { "--:" } else { "--" }).collect();
     let heads = line(&heads.map(str::to_string));
     let rows = rows.iter().map(|row| line(row));

@@ -151,7 +151,15 @@ fn plan(lab: &Arc<Lab>, reports: &[Report], as_json: bool) -> Result<()> {
             Needs::Nothing(why) => (String::new(), None, why),
         };
         let (seconds, bytes) = (plan.as_ref().map(Plan::seconds), plan.map(|plan| plan.bytes));
-        rows.push(Planned { claim: claim.id, report: &report.report, says: &claim.claim, command, seconds, bytes, why });
+        rows.push(Planned {
+            claim: claim.id,
+            report: &report.report,
+            says: &claim.claim,
+            command,
+            seconds,
+            bytes,
+            why,
+        });
     }
     rows.sort_by_key(|row| row.claim);
     if as_json {

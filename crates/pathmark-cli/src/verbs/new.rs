@@ -47,5 +47,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         InputError::new("name", &shown, problem).allowed("a new name in a folder that exists").into()
     })?;
     file.write_all(text.as_bytes()).map_err(|e| Error::system("writing", &path, e))?;
-    print(&format!("created {shown}; edit it, then run: {}", shell::command(verb.iter().copied().chain([shown.as_str()]))))
+    print(&format!(
+        "created {shown}; edit it, then run: {}",
+        shell::command(verb.iter().copied().chain([shown.as_str()]))
+    ))
 }

@@ -58,7 +58,10 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
             continue;
         }
         let Some(filters) = runnable(&definition, profile, theirs)? else {
-            console.note(&format!("{} is left out: all of its cells use more processors than there are here", definition.name));
+            console.note(&format!(
+                "{} is left out: all of its cells use more processors than there are here",
+                definition.name
+            ));
             continue;
         };
         let options = Options {
@@ -173,7 +176,7 @@ fn in_words(statements: &[Statement], theirs: &Path, margin: f64) -> String {
     let row = |own: &&Statement| {
         let interval = own.difference.map(|[_, low, high]| format!("{low:.3} to {high:.3}"));
         let why = match &own.verdict {
-            Reproduction::CannotTell(Some(more)) => format!(": {} more", counted(*more, "repetition")),
+            Reproduction::CannotTell(Some(more)) => format!(": {}", counted(*more, "more repetition")),
             Reproduction::CannotTell(None) => ": their rows are too few".to_string(),
             Reproduction::OtherHardware(why) => format!(": {why}"),
             Reproduction::Reproduced | Reproduction::NotReproduced => String::new(),

@@ -94,7 +94,8 @@ impl Rows {
     fn read(folder: &Path) -> Result<Self> {
         let path = packed_rows::records_path(folder);
         let all = if path.is_file() { read_records(&path)? } else { Vec::new() };
-        let (rows, failed): (Vec<_>, Vec<_>) = all.into_iter().partition(|row| row.error.is_empty() && !row.is_left_out());
+        let (rows, failed): (Vec<_>, Vec<_>) =
+            all.into_iter().partition(|row| row.error.is_empty() && !row.is_left_out());
         let why = |row: Record| {
             let why = if row.error.is_empty() { row.warnings } else { row.error };
             (row.cell, why)
@@ -164,11 +165,8 @@ impl Statements {
             };
             let (theirs, own) = (all(&their_sums), all(&sums));
             let Some((first, id)) = points.first().filter(|_| !theirs.is_empty()) else { continue };
-            let same = if own.is_empty() {
-                Err(absent(first).unwrap_or_else(|| here.why_not(id)))
-            } else {
-                Ok(own == theirs)
-            };
+            let same =
+                if own.is_empty() { Err(absent(first).unwrap_or_else(|| here.why_not(id))) } else { Ok(own == theirs) };
             images.push((format!("image {image}"), same));
         }
         Ok(Self { experiment: definition.name.clone(), ratios, images })

@@ -110,8 +110,10 @@ pub fn judge<'a>(lab: &Arc<Lab>, reports: &'a [Report], folders: &[PathBuf]) -> 
                 library.load(report, experiment)?;
             }
         }
-        let parts =
-            libraries.iter().filter_map(|library| library.part(report, test).transpose()).collect::<Result<Vec<_>>>()?;
+        let parts = libraries
+            .iter()
+            .filter_map(|library| library.part(report, test).transpose())
+            .collect::<Result<Vec<_>>>()?;
         if parts.is_empty() {
             answers.push(without(Verdict::NotAnswered, "The results have no such rows."));
             continue;

@@ -109,11 +109,12 @@ impl PlainRows {
         for row in reader.into_records() {
             let row = row.map_err(|e| unreadable(&e))?;
             let line = row.position().map_or(1, |position| position.line() as usize);
-            let (record, columns) = self.row(&heads, &row).map_err(|Wrong(field, value, problem)| {
-                refused(&field, &value, problem, line)
-            })?;
+            let (record, columns) = self
+                .row(&heads, &row)
+                .map_err(|Wrong(field, value, problem)| refused(&field, &value, problem, line))?;
             if !seen.insert((record.cell.clone(), record.repetition, record.pair)) {
-                let problem = "occurs twice with one repetition; name the column that tells both rows apart in `settings`";
+                let problem =
+                    "occurs twice with one repetition; name the column that tells both rows apart in `settings`";
                 return Err(refused("settings", &record.cell, problem, line).into());
             }
             let schedule = Schedule { name: String::new(), key: ScheduleKey::default() };
@@ -125,7 +126,8 @@ impl PlainRows {
 
     /// A row as it is paired, and its columns.
     fn row(&self, heads: &StringRecord, row: &StringRecord) -> std::result::Result<(Record, Columns), Wrong> {
-        let field = |name: &str| heads.iter().position(|head| head == name).and_then(|at| row.get(at)).unwrap_or_default();
+        let field =
+            |name: &str| heads.iter().position(|head| head == name).and_then(|at| row.get(at)).unwrap_or_default();
         let whole = |name: &str| {
             let text = field(name).trim();
             text.parse::<u32>().map_err(|_| Wrong(name.to_string(), text.to_string(), "is not a whole number from 0"))

@@ -61,7 +61,10 @@ fn rows_of_other_programs_judge_both_ways() {
         (power("quick"), 1.0),
         (power("bubble"), 2.0),
         // n = 1000 and 10000 of 7 repetitions in the median.
-        ("statistic = \"value\"\ncolumn = \"seconds\"\nrows = { program = \"quick\", n = \">=1000\" }".to_string(), 5.5165e-6),
+        (
+            "statistic = \"value\"\ncolumn = \"seconds\"\nrows = { program = \"quick\", n = \">=1000\" }".to_string(),
+            5.5165e-6,
+        ),
     ] {
         let with = |low: f64, high: f64| judged(&sorts(), &format!("{evidence}\nwithin = [{low}, {high}]")).unwrap();
         let (verdict, found, source) = with(0.9 * expected, 1.1 * expected);
@@ -80,7 +83,10 @@ fn wrong_tables_and_queries_are_told_with_their_place() {
         (format!("{value}\nrows = {{ size = 3 }}"), ["s.toml:25", "size", "program"]),
         (format!("{value}\ncomparable-if = {{ machine = \"a\" }}"), ["s.toml:25", "machine", "program"]),
         ("statistic = \"rmse-slope\"\nat-least = 0.0".to_string(), ["s.toml:21", "sorts", "paired-ratio"]),
-        ("statistic = \"speedup\"\nover = { program = \"quick\" }\nat-least = 0.0".to_string(), ["s.toml:21", "sorts", "column"]),
+        (
+            "statistic = \"speedup\"\nover = { program = \"quick\" }\nat-least = 0.0".to_string(),
+            ["s.toml:21", "sorts", "column"],
+        ),
     ] {
         let error = judged(&sorts(), &evidence).unwrap_err();
         assert!(told.iter().all(|word| error.contains(word)), "{evidence}\n{error}");

@@ -130,7 +130,10 @@ impl Kind {
 
     /// Whether it asks for columns that only this program's rows have.
     pub(super) fn is_of_own_rows(&self) -> bool {
-        matches!(self, Self::RmseSlope {} | Self::Checksum {} | Self::Forecast { .. } | Self::Speedup { column: None, .. })
+        matches!(
+            self,
+            Self::RmseSlope {} | Self::Checksum {} | Self::Forecast { .. } | Self::Speedup { column: None, .. }
+        )
     }
 }
 

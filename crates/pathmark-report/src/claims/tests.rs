@@ -262,7 +262,7 @@ fn everything_a_claim_asks_for_exists() {
             vec!["X.toml:15", "cores", "many"],
         ),
         (
-            format!("statistic = \"mean-ratio\"\nover = {{ colour = 1 }}\n{rows}"),
+            format!("statistic = \"mean-ratio\"\nover = {{ colour = 1 }}\ncolumn = \"mse\"\n{rows}"),
             vec!["X.toml:14", "over", "colour", "spp"],
         ),
         (
