@@ -24,7 +24,7 @@ const STUMBLED_OVER: &[(&str, &str)] = &[
     ("struct ", "Course"),
 ];
 
-const FOLDERS: &[&str] = &["src", "crates", "tests", "benches", "examples", "experiments", "docs"];
+const FOLDERS: &[&str] = &["src", "crates", "tests", "benches", "examples", "exercises", "experiments", "docs"];
 const FILES: &[&str] =
     &["README.md", "METHODOLOGY.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "results/README.md"];
 const ENDINGS: &[&str] = &["rs", "toml", "md", "js", "css"];

@@ -15,6 +15,7 @@ use pathmark_check as check;
 use pathmark_harness::{
     analysis, atomic_file, cases_file, cluster, csv_file, error, experiment, files, film, film_file, guard_prices,
     image_io, input, kernel, lab, lock, material, math, measure, metric, sampling, scene, shell, simd, simulate,
+    strategy,
 };
 use pathmark_report::{self as report, plot};
 use std::ffi::OsString;
@@ -32,8 +33,8 @@ Examples:
   pathmark reproduce                                         run all experiments
   pathmark simulate rows.csv --workers 1..64                 forecast a traced run on more cores
 
-Measure: reproduce, run, rank, why, diff, price, bursts, report, claims, replicate    Render: render, merge, image
-Look inside: inspect, simulate    Ask: doctor, machine, list, new, selftest, shell";
+Measure: reproduce, run, rank, why, diff, price, bursts, grade, report, claims, replicate    Render: render, merge, image
+Look inside: inspect, simulate    Ask: doctor, machine, list, new, contract, selftest, shell";
 
 /// A laboratory for scheduling unequal work on many cores, and for what accuracy costs in time.
 #[derive(Parser)]

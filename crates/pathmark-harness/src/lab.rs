@@ -179,6 +179,11 @@ impl Lab {
         self.added.push((kind, name.to_string(), at));
     }
 
+    /// Whether the program added this name, such as a `strategy`.
+    pub fn is_own(&self, kind: &str, name: &str) -> bool {
+        self.added.iter().any(|(own, known, _)| *own == kind && known == name)
+    }
+
     pub fn check(&self) -> Result<()> {
         self.problem.as_ref().map_or(Ok(()), |problem| Err(problem.clone().into()))
     }

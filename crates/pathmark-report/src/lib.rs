@@ -2,6 +2,7 @@
 
 pub mod bursts;
 pub mod claims;
+mod class;
 mod contenders;
 mod estimated;
 #[cfg(test)]
@@ -34,9 +35,10 @@ pub use results::Results;
 pub use words::counted;
 
 use crate::error::{Error, InputError, Result};
-use crate::experiment::{MACHINE, has_records, records_path};
+use crate::experiment::{MACHINE, records_path};
 use crate::files::Files;
 use crate::lab::Lab;
+use class::{Class, Member, members};
 use page::{Section, benches, block, doctor, guards, table};
 use pathmark_harness::{
     analysis, atomic_file, cases_file, cluster, csv_file, digest, error, experiment, files, film_file, guard_prices,
@@ -55,24 +57,31 @@ pub fn claim(option: &str, out: &Path, files: &mut Files) -> Result<()> {
     files.renews(option, &out.join(PAGE), page::is_page)
 }
 
-/// Draws the figures of every experiment in a folder and writes `report.html` there; returns the page's path. The page
-/// shows the verdicts on claims; only the verb `claims` writes them into files.
+/// Draws the figures of every experiment in a folder, or in the folders of a class, and writes `report.html` there; returns
+/// the page's path. The page shows the verdicts on claims; only the verb `claims` writes them into files.
 pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
-    let mut sections = Vec::new();
+    let (mut sections, mut class) = (Vec::new(), Class::default());
     let mut add = |folder: &Path, section: Section| {
         section.blocks.iter().try_for_each(|block| block.save(&folder.join("figures")))?;
         sections.push(section);
         Ok::<(), Error>(())
     };
-    for folder in experiment_folders(out)? {
-        let results = Results::read(lab, out, &folder)?;
+    for Member { folder, student } in members(out)? {
+        let results = Results::read(lab, folder.parent().unwrap_or(out), &folder)?;
         let blocks = figures::blocks(&results)?;
-        let own = folder.file_name().unwrap_or_default().to_string_lossy();
+        if let Some(student) = &student {
+            class.add(student, &results)?;
+        }
+        let own = folder.strip_prefix(out).unwrap_or(&folder).display();
         let rows = records_path(&folder);
         let files = [rows.as_path(), Path::new(MACHINE)]
             .map(|file| format!("{own}/{}", file.file_name().unwrap_or_default().to_string_lossy()))
             .to_vec();
-        add(&folder, Section { files, ..Section::of(results, blocks) })?;
+        let section = Section { files, ..Section::of(results, blocks) };
+        add(&folder, class::of_student(student.as_deref(), section))?;
+    }
+    if let Some(section) = class.section() {
+        add(out, section)?;
     }
     for section in [guards::section(out)?, page::bursts::section(out)?, benches::section(out)?].into_iter().flatten() {
         add(&out.join(&section.name), section)?;
@@ -89,23 +98,4 @@ pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
     let html = page::html(&sections)?;
     atomic_file::write(&page, |file| file.write_all(html.as_bytes()))?;
     Ok(page)
-}
-
-/// The folders that have records, sorted by name.
-fn experiment_folders(out: &Path) -> Result<Vec<PathBuf>> {
-    let entries = std::fs::read_dir(out).map_err(|e| match e.kind() {
-        std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => {
-            InputError::new("folder", out.display().to_string(), "there is no such folder").into()
-        }
-        _ => Error::system("reading", out, e),
-    })?;
-    let mut folders = Vec::new();
-    for entry in entries {
-        let path = entry.map_err(|e| Error::system("reading", out, e))?.path();
-        if has_records(&path) {
-            folders.push(path);
-        }
-    }
-    folders.sort();
-    Ok(folders)
 }

@@ -14,6 +14,7 @@ use crate::report::FIGURES;
 use crate::sampling::SAMPLERS;
 use crate::scene::{ACCELERATORS, CAMERAS, FEATURES, FILTERS, GENERATORS, PROFILES, SHAPES, effect_names};
 use crate::simd::LEVELS;
+use crate::strategy::Entry as Strategy;
 use clap::builder::PossibleValuesParser;
 
 /// `pathmark list strategies --json`
@@ -35,6 +36,9 @@ struct Item {
     kind: Option<&'static str>,
     name: String,
     about: String,
+    /// Whether the program added it; `grade` asks for the strategies that it did.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    own: bool,
     /// The remedy for a warning.
     #[serde(skip_serializing_if = "Option::is_none")]
     advice: Option<&'static str>,
@@ -52,7 +56,7 @@ struct SceneItem {
 }
 
 fn item(name: &str, about: &str) -> Item {
-    Item { kind: None, name: name.to_string(), about: about.to_string(), advice: None, scene: None }
+    Item { kind: None, name: name.to_string(), about: about.to_string(), own: false, advice: None, scene: None }
 }
 
 /// Meaning, type and first schema of a column of `records.csv`.
@@ -88,7 +92,11 @@ type Items = fn(&Arc<Lab>) -> Result<Vec<Item>>;
 const KINDS: &[(&str, Items)] = &[
     ("scenes", |lab| lab.scenes().map(|name| scene_item(lab, name)).collect()),
     ("workloads", |lab| Ok(lab.workloads().iter().map(|entry| item(entry.name, entry.about())).collect())),
-    ("strategies", |lab| Ok(lab.strategies().iter().map(|entry| item(entry.name, entry.about)).collect())),
+    ("strategies", |lab| {
+        let strategy =
+            |entry: &Strategy| Item { own: lab.is_own("strategy", entry.name), ..item(entry.name, entry.about) };
+        Ok(lab.strategies().iter().map(strategy).collect())
+    }),
     ("decompositions", |_| Ok(DECOMPOSITIONS.iter().map(|entry| item(entry.example, entry.about)).collect())),
     ("outputs", named!(OUTPUTS)),
     ("estimators", |lab| Ok(lab.estimators().map(|entry| item(entry.name, entry.about)).collect())),

@@ -2,8 +2,10 @@
 
 mod bursts;
 mod claims;
+mod contract;
 mod diff;
 mod doctor;
+mod grade;
 mod image;
 mod inspect;
 mod list;
@@ -55,7 +57,11 @@ pub(super) enum Verb {
     Diff(diff::Arguments),
     /// Predict the samples and seconds that an accuracy costs; --verify checks the prediction by rendering.
     Price(price::Arguments),
-    /// Draw the figures and the page again from the records in a folder.
+    /// Try whether a strategy keeps the contract of all strategies.
+    Contract(contract::Arguments),
+    /// Grade programs with strategies of their own: contract, image, and speedup beside the built-in strategies.
+    Grade(grade::Arguments),
+    /// Draw the figures and the page again from the records in a folder, or in the folders of a class.
     Report(report::Arguments),
     /// Replay the jobs of a run on workers that this machine does not have.
     Simulate(simulate::Arguments),
@@ -102,6 +108,8 @@ impl Verb {
             Self::Bursts(arguments) => bursts::run(&arguments, lab, console),
             Self::Claims(arguments) => claims::run(&arguments, lab),
             Self::Replicate(arguments) => replicate::run(&arguments, lab, console),
+            Self::Contract(arguments) => contract::run(&arguments, lab),
+            Self::Grade(arguments) => grade::run(&arguments, lab, console),
             Self::Report(arguments) => report::run(&arguments, lab),
             Self::Simulate(arguments) => simulate::run(&arguments, lab, console),
             Self::Image(what) => what.run(lab, console),

@@ -34,10 +34,11 @@ pub fn baseline_folder(out: &Path, name: &str) -> PathBuf {
     out.join(FOLDER).join(name)
 }
 
-/// Refuses a file that is no program, and a program that cannot run cells, before the sweep starts.
-pub(super) fn check_program(program: &Path) -> Result<()> {
+/// Refuses a file that is no program, and a program that cannot run cells, before any work starts. `field` is how the user
+/// gave it.
+pub(super) fn check_program(field: &str, program: &Path) -> Result<()> {
     let refused = |problem: &str| {
-        let error = InputError::new("baseline", program.display().to_string(), problem);
+        let error = InputError::new(field, program.display().to_string(), problem);
         Err(error.allowed("another build of pathmark, or of a program with the same command line").into())
     };
     let is_program = fs::metadata(program).is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0);

@@ -127,7 +127,7 @@ impl<'a> Sweep<'a> {
             }
         }
         if let Some(program) = &options.baseline {
-            check_program(program)?;
+            check_program("baseline", program)?;
             let rows = baseline_folder(&options.out, &definition.name).join("records.csv");
             files.claims("out", &rows)?;
             if rows.exists() {

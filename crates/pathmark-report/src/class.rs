@@ -1,0 +1,222 @@
+//! Classes: a folder with a folder for each student, which is either an experiment's folder under the student's name or a
+//! folder of results. Machines differ, so the class is compared by speedups.
+
+use crate::error::{Error, InputError};
+use crate::experiment::{Chapter, MACHINE, read_run_file};
+use crate::page::Section;
+use crate::prelude::*;
+use crate::schedule::crew;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// Folders beside experiments in which a sweep leaves the rows of another build.
+const OTHER_BUILDS: [&str; 2] = ["baseline", "against"];
+
+/// An experiment's folder on the page.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct Member {
+    pub(crate) folder: PathBuf,
+    /// The name of the student's folder; `None` if the folder has the name of its experiment.
+    pub(crate) student: Option<String>,
+}
+
+/// The experiments of a page, sorted by their folders: those of the folder itself, or those of a class. A folder is a class
+/// if none in it has the name of its experiment, and there is more than one, or one with experiments in it.
+pub(crate) fn members(out: &Path) -> Result<Vec<Member>> {
+    let (with_rows, others): (Vec<PathBuf>, Vec<PathBuf>) = folders(out)?.into_iter().partition(|path| has_rows(path));
+    let mut found = with_rows.into_iter().map(member).collect::<Result<Vec<Member>>>()?;
+    // A folder of results may have others in it, such as those of earlier versions.
+    if found.iter().all(|member| member.student.is_some()) {
+        for student in others.into_iter().filter(|folder| !OTHER_BUILDS.contains(&name_of(folder).as_str())) {
+            let own = folders(&student)?.into_iter().filter(|path| has_rows(path));
+            found.extend(own.map(|folder| Member { folder, student: Some(name_of(&student)) }));
+        }
+    }
+    let is_alone = found.len() == 1 && found[0].folder.parent() == Some(out);
+    if is_alone || found.iter().any(|member| member.student.is_none()) {
+        found.iter_mut().for_each(|member| member.student = None);
+    }
+    found.sort_by(|a, b| a.folder.cmp(&b.folder));
+    Ok(found)
+}
+
+fn name_of(folder: &Path) -> String {
+    folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+fn has_rows(folder: &Path) -> bool {
+    has_records(folder)
+}
+
+/// A folder that does not have the name of the experiment that was run has that of a student.
+fn member(folder: PathBuf) -> Result<Member> {
+    let path = folder.join(MACHINE);
+    let experiment = if path.is_file() { read_run_file(&path)?.experiment } else { String::new() };
+    let own = name_of(&folder);
+    let asked = Path::new(&experiment).file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    Ok(Member { student: asked.filter(|asked| *asked != own).map(|_| own), folder })
+}
+
+fn folders(out: &Path) -> Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(out).map_err(|e| match e.kind() {
+        ErrorKind::NotFound | ErrorKind::NotADirectory => {
+            InputError::new("folder", out.display().to_string(), "there is no such folder").into()
+        }
+        _ => Error::system("reading", out, e),
+    })?;
+    let paths = entries.map(|entry| Ok(entry.map_err(|e| Error::system("reading", out, e))?.path()));
+    let paths = paths.collect::<Result<Vec<PathBuf>>>()?;
+    Ok(paths.into_iter().filter(|path| path.is_dir()).collect())
+}
+
+/// The section of an experiment; if it is a student's, the heading begins with the folder's name.
+pub(crate) fn of_student(student: Option<&str>, section: Section) -> Section {
+    let Some(student) = student else { return section };
+    let name = if section.name == student { section.name } else { format!("{student}-{}", section.name) };
+    // It is an anchor, which has no blanks.
+    let name = name.replace(char::is_whitespace, "-");
+    Section { name, title: format!("{student}: {}", section.title), ..section }
+}
+
+/// A schedule in a student's folder.
+struct Line {
+    student: String,
+    schedule: String,
+    speedup: Estimated,
+    processors: usize,
+    processor: String,
+}
+
+/// The speedups of a class.
+#[derive(Default)]
+pub(crate) struct Class {
+    students: BTreeSet<String>,
+    machines: BTreeSet<String>,
+    /// The first chapter of their experiments.
+    chapter: Option<Chapter>,
+    lines: Vec<Line>,
+}
+
+impl Class {
+    pub(crate) fn add(&mut self, student: &str, results: &Results) -> Result<()> {
+        let machine = &results.run.machine;
+        self.students.insert(student.to_string());
+        self.machines.insert(machine.line());
+        let own = results.definition.chapter;
+        self.chapter = Some(self.chapter.map_or(own, |first| first.min(own)));
+        let serial = results.serial()?;
+        self.lines.extend(serial.speedups().into_iter().map(|(schedule, speedup)| Line {
+            student: student.to_string(),
+            schedule: crew(&serial.line(schedule), schedule.key.threads),
+            speedup: speedup.into(),
+            processors: machine.processors,
+            processor: machine.cpu.clone(),
+        }));
+        Ok(())
+    }
+
+    /// The section before those of the students; `None` without any.
+    pub(crate) fn section(&self) -> Option<Section> {
+        let found = format!(
+            "{}, {} of machine. Each speedup is a ratio of times within one folder, so folders compare although machines \
+             differ. Seconds would not.",
+            counted(self.students.len(), "folder"),
+            counted(self.machines.len(), "kind")
+        );
+        let table = Block::table("class", "Speedups of the class, against serial in the same folder", &self.lines)
+            .column("folder", |line| line.student.clone())
+            .column("schedule", |line| line.schedule.clone())
+            .estimated("speedup", Decimals(2), |line| line.speedup)
+            .column("processors", |line| line.processors.to_string())
+            .column("processor", |line| line.processor.clone())
+            .end();
+        Some(Section {
+            name: "class".to_string(),
+            title: "The class".to_string(),
+            question: "How many times as fast as serial is each schedule, in each folder?".to_string(),
+            chapter: Some(self.chapter?),
+            blocks: vec![Block::finding(found), table],
+            ..Section::default()
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::RunFile;
+    use crate::lab::Lab;
+    use crate::measure::Record;
+    use crate::tests::{folder_of, row, table};
+    use std::fs;
+
+    /// Six repetitions of serial and of a pool that is twice as fast, on a machine that takes `factor` times as long.
+    fn rows(factor: f64) -> Vec<Record> {
+        let of = |repetition: u32| {
+            let seconds = factor * (1.0 + 0.1 * f64::from(repetition));
+            let pool = Record { strategy: "pool".to_string(), threads: 2, makespan_s: Some(0.5 * seconds), ..row() };
+            [Record { makespan_s: Some(seconds), ..row() }, pool].map(|row| Record { repetition, ..row })
+        };
+        (0..6).flat_map(of).collect()
+    }
+
+    /// A student's experiment under the student's name, and another student's folder of results.
+    fn class() -> tempfile::TempDir {
+        let class = tempfile::tempdir().unwrap();
+        let [anna, bert] = [1.0, 7.0].map(|factor| folder_of(&["speedup"], "", rows(factor)));
+        for (from, to) in [(anna.path().join("an-experiment"), "anna"), (bert.path().to_path_buf(), "bert b")] {
+            copy(&from, &class.path().join(to));
+        }
+        let run =
+            RunFile { experiment: "lab.toml".to_string(), ..RunFile::of_now("pathmark run lab.toml".to_string()) };
+        run.write(&class.path().join("anna/machine.toml")).unwrap();
+        class
+    }
+
+    fn copy(from: &Path, to: &Path) {
+        fs::create_dir_all(to).unwrap();
+        for entry in fs::read_dir(from).unwrap().map(|entry| entry.unwrap().path()) {
+            let to = to.join(entry.file_name().unwrap());
+            if entry.is_dir() { copy(&entry, &to) } else { _ = fs::copy(&entry, &to).unwrap() }
+        }
+    }
+
+    #[test]
+    fn a_class_has_a_heading_for_each_folder_and_a_table_of_ratios() {
+        let class = class();
+        let page = fs::read_to_string(crate::write(&Lab::built_in(), class.path()).unwrap()).unwrap();
+        let headings = ["<h3>The class</h3>", "<h3>anna: </h3>", "<h3>bert b: </h3>"];
+        let places = headings.map(|heading| page.find(heading).unwrap_or_else(|| panic!("{heading}: {page}")));
+        assert!(places.is_sorted());
+        assert!(page.contains("id=\"bert-b-an-experiment\"") && page.contains("bert b/an-experiment/records.csv"));
+        let mut found = Class::default();
+        for Member { folder, student } in members(class.path()).unwrap() {
+            let results = Results::open(&Lab::built_in(), &folder).unwrap();
+            found.add(&student.unwrap(), &results).unwrap();
+        }
+        let section = found.section().unwrap();
+        let shown: Vec<[String; 3]> =
+            table(&section.blocks).rows().map(|row| [&row[0], &row[1], &row[2]].map(Clone::clone)).collect();
+        // The machine of one student takes seven times as long.
+        let told = "2.00, 2.00 to 2.00 (96.8 %)";
+        assert_eq!(shown, [["anna", "pool, 2 threads", told], ["bert b", "pool, 2 threads", told]]);
+    }
+
+    #[test]
+    fn a_folder_of_results_is_no_class() {
+        let class = class();
+        let students = |folder: &Path| {
+            let found = members(folder).unwrap().into_iter().map(|member| (name_of(&member.folder), member.student));
+            found.collect::<Vec<_>>()
+        };
+        let own = |name: &str| (name.to_string(), None);
+        // Alone, under another name, as after `mv`.
+        fs::rename(class.path().join("bert b"), class.path().join("baseline")).unwrap();
+        assert_eq!(students(class.path()), [own("anna")]);
+        assert_eq!(students(&class.path().join("baseline")), [own("an-experiment")]);
+        // Beside an experiment of its own name, as in a folder of results with those of earlier versions.
+        fs::rename(class.path().join("baseline"), class.path().join("earlier")).unwrap();
+        fs::rename(class.path().join("earlier/an-experiment"), class.path().join("lab")).unwrap();
+        assert_eq!(students(class.path()), [own("anna"), own("lab")]);
+    }
+}
