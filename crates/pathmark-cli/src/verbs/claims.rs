@@ -1,7 +1,7 @@
 //! `pathmark claims`: the claims of the four reports beside the measurements.
 
 use super::prelude::*;
-use crate::report::claims::{self, Answer, Listing, Report, judge};
+use crate::report::claims::{self, Agreement, Answer, Listing, Report, judge};
 
 /// `pathmark claims out --report A`
 #[derive(Args)]
@@ -19,6 +19,10 @@ pub(crate) struct Arguments {
     /// FINDINGS.md and claims/findings.csv for findings.toml
     #[arg(long, value_name = "FILE", conflicts_with = "report")]
     ledger: Option<PathBuf>,
+    /// Say instead how far these results agree with those in DIR and in its folder `reports`: images bit for bit, the
+    /// findings of DIR/findings.toml by their intervals, claims by their verdicts. Other bits exit with code 1
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["out", "report", "ledger", "strict"])]
+    compare: Option<PathBuf>,
     /// Print an array of objects
     #[arg(long)]
     json: bool,
@@ -47,6 +51,9 @@ struct Row<'a> {
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
+    if let Some(earlier) = &arguments.compare {
+        return compare(arguments, earlier, lab);
+    }
     let (mut reports, listing) = match &arguments.ledger {
         None => (Report::all()?, Listing::of_reports()),
         Some(path) => {
@@ -62,11 +69,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
             return Err(InputError::new("report", letter, "there is no such report").allowed(known.join(", ")).into());
         }
     }
-    for folder in &arguments.folders {
-        if !folder.is_dir() {
-            return Err(InputError::new("folder", folder.display().to_string(), "there is no such folder").into());
-        }
-    }
+    check_folders(arguments)?;
     if let Some(out) = &arguments.out {
         listing.enter("out", out, &mut Files::default())?;
     }
@@ -95,6 +98,36 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
         return Err(Error::Check(problems.join("; ")));
     }
     Ok(())
+}
+
+fn check_folders(arguments: &Arguments) -> Result<()> {
+    for folder in &arguments.folders {
+        if !folder.is_dir() {
+            return Err(InputError::new("folder", folder.display().to_string(), "there is no such folder").into());
+        }
+    }
+    Ok(())
+}
+
+/// Prints how the folders agree with earlier results.
+fn compare(arguments: &Arguments, earlier: &Path, lab: &Arc<Lab>) -> Result<()> {
+    check_folders(arguments)?;
+    if !earlier.is_dir() {
+        return Err(InputError::new("compare", earlier.display().to_string(), "there is no such folder").into());
+    }
+    let found = Agreement::of(lab, &arguments.folders, earlier)?;
+    if arguments.json {
+        print_json(&found)?;
+    } else {
+        print(&found.in_words())?;
+    }
+    match found.other_images() {
+        [] => Ok(()),
+        [first, ..] => {
+            let count = counted(found.other_images().len(), "image");
+            Err(Error::Check(format!("{count} with other bits, for example {first}")))
+        }
+    }
 }
 
 fn row<'a>(answer: &'a Answer<'_>) -> Row<'a> {

@@ -30,7 +30,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
         let tables: Vec<String> = found.images.iter().map(table).collect();
         print(&tables.join("\n\n"))?;
         print(
-            "\nSchedules that share a letter cannot be told apart; all other orders hold together with 95 % confidence.",
+            "\nThe order is that of the times within the same repetitions, and each ratio is to the first schedule. Schedules that \
+             share a letter cannot be told apart; all other orders hold together with 95 % confidence.",
         )?;
     }
     if found.images.iter().any(|image| image.part[1] > 1) {
