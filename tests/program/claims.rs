@@ -133,7 +133,7 @@ fn results_agree_with_earlier_ones_or_it_is_told_where_not() {
     assert!(refused.err.contains(&checksum) && refused.out.contains("in 0 of 1 images"), "{}", refused.out);
     fs::create_dir(folder.path().join("none")).unwrap();
     let told = finish(pathmark(folder.path(), &["claims", "none", "--compare", "results"])).with_code(0).out;
-    assert!(told.contains("`pathmark reproduce --reports` would add up to 1 finding"), "{told}");
+    assert!(told.contains("`pathmark reproduce --reports`, 1 finding and 0 verdicts more could be compared"), "{told}");
     let refused = finish(pathmark(folder.path(), &["claims", "out", "--compare", "nowhere"])).with_code(2);
     assert!(refused.err.contains("compare = nowhere"), "{}", refused.err);
 }

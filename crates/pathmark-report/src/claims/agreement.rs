@@ -102,9 +102,9 @@ impl Agreement {
         let agreeing = |own: &Shared| format!("{} of {}", own.shared - own.differing.len(), own.shared);
         let overlapping = findings.shared - findings.differing.len() - same_side.len();
         let more = match (findings.lacking, verdicts.lacking) {
-            (0, 0) => "A longer run would add nothing to this comparison.".to_string(),
+            (0, 0) => "More rows would add nothing to this comparison.".to_string(),
             (findings, verdicts) => format!(
-                "`pathmark reproduce --reports` would add up to {} and {}.",
+                "With the rows of both `pathmark reproduce` and `pathmark reproduce --reports`, {} and {} more could be compared.",
                 counted(findings, "finding"),
                 counted(verdicts, "verdict")
             ),
