@@ -118,3 +118,19 @@ fn no_committed_figure_is_empty() {
         assert!(!fs::read_to_string(&figure).unwrap().contains("\nno data\n"), "{}", figure.display());
     }
 }
+
+/// Every file has the address of the manifest, so one command writes another one into all of them.
+#[test]
+fn one_command_fills_in_the_address() {
+    let read = |name: &str| fs::read_to_string(root().join(name)).unwrap();
+    let manifest: toml::Table = read("Cargo.toml").parse().unwrap();
+    let address = manifest["workspace"]["package"]["repository"].as_str().unwrap().to_string();
+    assert!(read("README.md").contains(&format!("git clone {address} ")), "{address}");
+    for name in ["README.md", "examples/pool-template/Cargo.toml"] {
+        let text = read(name);
+        let sources: Vec<&str> = text.lines().filter(|line| line.contains("{ git = ")).collect();
+        assert!(!sources.is_empty(), "{name}");
+        assert!(sources.iter().all(|line| line.contains(&format!("git = \"{address}\""))), "{name}: {sources:?}");
+    }
+    assert!(read("CONTRIBUTING.md").contains("address-to-be-chosen.invalid|"));
+}

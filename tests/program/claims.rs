@@ -4,8 +4,10 @@ use crate::experiment::{TINY, write_tiny};
 use crate::program::{finish, in_memory, pathmark};
 use crate::snapshot::{assert_untouched, snapshot};
 use pathmark::experiment::RunFile;
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 /// The claims of all reports.
 const CLAIMS: usize = 85;
@@ -98,6 +100,42 @@ fn verdicts_are_not_replaced_by_fewer() {
     }
     fewer().with_code(0);
     listing(folder.path(), &["--out", "verdicts"]);
+}
+
+/// The command of the README that compares results with ours ends in a sentence, and fails if an image has other bits.
+#[test]
+fn results_agree_with_earlier_ones_or_it_is_told_where_not() {
+    let folder = with_rows();
+    let readme = include_str!("../../README.md");
+    let command = readme.lines().find(|line| line.starts_with("pathmark claims out --compare ")).unwrap();
+    let words: Vec<&str> = command.split('#').next().unwrap().split_whitespace().skip(1).collect();
+    let earlier = folder.path().join(words[3]);
+    let copied = Command::new("cp").arg("-r").arg(folder.path().join("out")).arg(&earlier).status().unwrap();
+    assert!(copied.success());
+    let finding = "report = \"findings\"\ntitle = \"Ours\"\nabout = \"Numbers.\"\n[[claim]]\nid = 1\nclaim = \"a speedup\"\nlevel = 0.95\n\
+        experiment = \"thread-scaling\"\nstatistic = \"speedup\"\nrows = { strategy = \"work-stealing\", threads = 2 }\n\
+        over = { strategy = \"serial\" }\n";
+    fs::write(earlier.join("findings.toml"), finding).unwrap();
+    let before = snapshot(folder.path());
+    let told = finish(pathmark(folder.path(), &words)).with_code(0).out;
+    let last = told.lines().last().unwrap();
+    assert!(last.contains("of 1 experiment agree with results in 1 of 1 images, bit for bit"), "{told}");
+    assert!(last.contains("in 1 of 1 findings (1 with overlapping intervals, 0 on the same side of 1)"), "{told}");
+    assert_untouched(&before, &snapshot(folder.path()));
+
+    // Results with another image, and without the rows of the finding.
+    let rows = earlier.join("thread-scaling/records.csv");
+    let text = fs::read_to_string(&rows).unwrap();
+    let checksum = csv::Reader::from_path(&rows).unwrap().into_deserialize::<BTreeMap<String, String>>().next();
+    let checksum = checksum.unwrap().unwrap()["checksum"].clone();
+    fs::write(&rows, text.replace(&checksum, &checksum.chars().rev().collect::<String>())).unwrap();
+    let refused = finish(pathmark(folder.path(), &words)).with_code(1);
+    assert!(refused.err.contains(&checksum) && refused.out.contains("in 0 of 1 images"), "{}", refused.out);
+    fs::create_dir(folder.path().join("none")).unwrap();
+    let told = finish(pathmark(folder.path(), &["claims", "none", "--compare", "results"])).with_code(0).out;
+    assert!(told.contains("`pathmark reproduce --reports`, 1 finding and 0 verdicts more could be compared"), "{told}");
+    let refused = finish(pathmark(folder.path(), &["claims", "out", "--compare", "nowhere"])).with_code(2);
+    assert!(refused.err.contains("compare = nowhere"), "{}", refused.err);
 }
 
 /// The same rows are drawn to the same bytes, and `report` changes no file but the page and the figures.

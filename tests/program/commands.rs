@@ -16,8 +16,10 @@ fn blocks(text: &str) -> Vec<(&str, &str)> {
 /// The README's commands in a small size, without those that take an hour, need a feature or run in other tests.
 #[test]
 fn the_commands_of_the_readme_run() {
-    const ELSEWHERE: [&str; 5] = [
+    const ELSEWHERE: [&str; 7] = [
+        "pathmark diff",
         "pathmark reproduce",
+        "pathmark claims out --compare",
         "pathmark selftest",
         "pathmark run openmp",
         "pathmark run granularity --baseline",

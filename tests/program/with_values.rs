@@ -36,6 +36,18 @@ fn values_are_set_in_every_matrix_and_profile() {
     assert_eq!(rows.len(), 10);
 }
 
+/// A matrix's own size comes before that of the profile, so the user is told that it stays.
+#[test]
+fn sizes_that_stay_are_told() {
+    let folder = in_memory();
+    write_tiny(folder.path(), &TINY.replace("[matrix]", "[matrix]\nsize = [20, 12]"));
+    let told = |values: &str| {
+        let arguments = ["run", "tiny.toml", "--plan", "--set", values];
+        finish(pathmark(folder.path(), &arguments)).with_code(0).err.contains("keep it: 20x12")
+    };
+    assert!(told("seed=2") && !told("size=16x8"));
+}
+
 /// The definition beside the rows is the experiment that was run.
 #[test]
 fn the_definition_beside_the_rows_has_the_values() {

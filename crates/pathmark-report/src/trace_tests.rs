@@ -33,6 +33,11 @@ fn trace(strategy: &str, costs: &[f64], workers: u32) -> TraceFile {
 /// Three repetitions of serial runs of four jobs, each with a run of static blocks on two threads, in which every job
 /// takes a quarter longer, and one with a thread for each job.
 fn folder(figures: &[&str], more: &str) -> TempDir {
+    folder_with(figures, more, [""; 3])
+}
+
+/// The same with the warnings of each repetition.
+fn folder_with(figures: &[&str], more: &str, warnings: [&str; 3]) -> TempDir {
     let serial = [[1.0, 1.0, 1.0, 3.0], [1.0, 1.0, 9.0, 1.0], [1.0, 2.0, 1.0, 1.0]];
     let mut rows = Vec::new();
     for (repetition, costs) in serial.iter().enumerate() {
@@ -56,6 +61,7 @@ fn folder(figures: &[&str], more: &str) -> TempDir {
                 busy_sum_s,
                 cpu_user_s,
                 jobs: 4,
+                warnings: warnings[repetition as usize].to_string(),
                 ..row()
             });
         }
@@ -162,4 +168,19 @@ fn shared_processors_have_timelines_of_their_own() {
     assert!(notes(&blocks, "timelines").is_some() && notes(&blocks, "timelines-oversubscribed").is_some());
     assert!(super::tests::svg(&blocks, "timelines").contains("Not drawn: serial"));
     assert!(super::tests::svg(&blocks, "timelines-oversubscribed").contains("waiting for a processor"));
+}
+
+/// The run with the median time is drawn, and a disturbed one only if there is no other.
+#[test]
+fn timelines_are_of_runs_that_nothing_disturbed() {
+    let makespan_ms = |warnings: [&str; 3]| {
+        let blocks = drawn(&folder_with(&["timelines"], "", warnings));
+        let table = super::tests::table(&blocks);
+        let place = |head: &str| table.heads().position(|own| own == head).unwrap();
+        let own = table.rows().find(|row| row[0].contains("static-blocks")).unwrap();
+        own[place("makespan, ms")].to_string()
+    };
+    assert_eq!(makespan_ms([""; 3]), "6000.00");
+    assert_eq!(makespan_ms(["drift(25 %)", "", ""]), "5000.00");
+    assert_eq!(makespan_ms(["drift(25 %)"; 3]), "6000.00");
 }

@@ -89,6 +89,25 @@ fn warnings_are_explained_as_rows_have_them() {
     }
 }
 
+/// The keys of a table are listed by its name.
+#[test]
+fn keys_are_listed_by_table() {
+    let folder = in_memory();
+    let listed = |table: &str| {
+        let all = json(&run(folder.path(), &["list", "keys", table, "--json"]).out);
+        let text = |item: &Value, key: &str| item[key].as_str().unwrap().to_string();
+        all.as_array().unwrap().iter().map(|item| (text(item, "name"), text(item, "about"))).collect::<Vec<_>>()
+    };
+    let scene = listed("scene");
+    assert!(scene.len() > 60 && scene.iter().all(|(name, _)| name.starts_with("scene.")), "{scene:?}");
+    let view = scene.iter().find(|(name, _)| name == "scene.camera.pinhole.field-of-view").unwrap();
+    assert!(view.1.ends_with("[number, 1e-6 to 179 degrees; required]"), "{view:?}");
+    assert_eq!(listed("scene.fog").len(), 4, "the table and its keys");
+    assert!(listed("matrix").iter().any(|(name, _)| name == "matrix.spp"));
+    let refused = finish(pathmark(folder.path(), &["list", "keys", "scen"])).with_code(2);
+    assert!(refused.err.contains("none of the keys"), "{}", refused.err);
+}
+
 /// Names of version 0.1 mean what today's names mean.
 #[test]
 fn old_names_are_read() {

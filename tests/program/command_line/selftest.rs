@@ -9,6 +9,10 @@ fn cases_can_be_chosen() {
     let folder = in_memory();
     let shown = run(folder.path(), &["selftest", "P10"]).out;
     assert!(shown.contains("P10  pass") && shown.contains("bsdf, NaN: counted: expected"), "{shown}");
+    assert!(
+        run(folder.path(), &["selftest", "P010"]).out.contains("P10  pass"),
+        "zeros before a number change nothing"
+    );
     let found = json(&run(folder.path(), &["selftest", "P10", "--json"]).out);
     let case = &found["cases"][0];
     assert!(case["id"] == "P10" && case["pass"] == true && case["trials"].as_array().is_some_and(|all| all.len() > 9));

@@ -1,10 +1,8 @@
 //! `pathmark claims`: the claims of the four reports, or of a ledger of one's own, beside the measurements.
 
 use super::prelude::*;
-use crate::experiment::{Definition, Options, Plan, Prices, Profile, Sweep};
-use crate::report::claims::{self, Answer, Listing, Needs, Report, judge};
-use crate::shell;
-use std::collections::BTreeMap;
+use super::plan_of_claims::plan;
+use crate::report::claims::{self, Agreement, Answer, Listing, Report, judge};
 
 /// `pathmark claims out --report A`
 #[derive(Args)]
@@ -25,6 +23,10 @@ pub(crate) struct Arguments {
     /// Print for each claim the command that measures its rows, with seconds and bytes, and judge none; run only a pilot
     #[arg(long, conflicts_with_all = ["out", "strict", "markdown"])]
     plan: bool,
+    /// Say instead how far these results agree with those in DIR and in its folder `reports`: images bit for bit, the
+    /// findings of DIR/findings.toml by their intervals, claims by their verdicts. Other bits exit with code 1
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["out", "report", "ledger", "strict"])]
+    compare: Option<PathBuf>,
     /// Print an array of objects
     #[arg(long)]
     json: bool,
@@ -56,6 +58,9 @@ struct Row<'a> {
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
+    if let Some(earlier) = &arguments.compare {
+        return compare(arguments, earlier, lab);
+    }
     let (mut reports, listing) = match &arguments.ledger {
         None => (Report::all(lab)?, Listing::of_reports()),
         Some(path) => {
@@ -74,11 +79,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     if arguments.plan {
         return plan(lab, &reports, arguments.json);
     }
-    for folder in &arguments.folders {
-        if !folder.is_dir() {
-            return Err(InputError::new("folder", folder.display().to_string(), "there is no such folder").into());
-        }
-    }
+    check_folders(arguments)?;
     if let Some(out) = &arguments.out {
         listing.enter("out", out, &mut Files::default())?;
     }
@@ -111,86 +112,34 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     Ok(())
 }
 
-/// How the rows of a claim are measured.
-#[derive(Serialize)]
-struct Planned<'a> {
-    claim: u32,
-    report: &'a str,
-    says: &'a str,
-    /// Empty if this program cannot measure it.
-    command: String,
-    /// Of the whole experiment, which may answer several claims.
-    seconds: Option<f64>,
-    bytes: Option<u64>,
-    /// Why there is no command.
-    why: String,
+fn check_folders(arguments: &Arguments) -> Result<()> {
+    for folder in &arguments.folders {
+        if !folder.is_dir() {
+            return Err(InputError::new("folder", folder.display().to_string(), "there is no such folder").into());
+        }
+    }
+    Ok(())
 }
 
-/// Prints for each claim the command that measures its rows, and what it takes.
-fn plan(lab: &Arc<Lab>, reports: &[Report], as_json: bool) -> Result<()> {
-    let mut prices = Prices::new(lab);
-    let mut plans: BTreeMap<String, Option<(String, Plan)>> = BTreeMap::new();
-    let mut rows = Vec::new();
-    for (report, claim) in reports.iter().flat_map(|report| report.claims.iter().map(move |claim| (report, claim))) {
-        let (command, plan, why) = match report.needs(claim) {
-            Needs::Experiment(name) => {
-                let planned = match plans.get(&name) {
-                    Some(planned) => planned.clone(),
-                    None => {
-                        let planned = plan_of(lab, &name, &mut prices)?;
-                        plans.entry(name.clone()).or_insert(planned).clone()
-                    }
-                };
-                match planned {
-                    Some((command, plan)) => (command, Some(plan), String::new()),
-                    None => (String::new(), None, format!("no experiment is called {name}")),
-                }
-            }
-            Needs::Table(file) => (String::new(), None, format!("rows of another program, in {file}")),
-            Needs::HardCases => (shell::command(["selftest", "--out", "out"]), None, String::new()),
-            Needs::Nothing(why) => (String::new(), None, why),
-        };
-        let (seconds, bytes) = (plan.as_ref().map(Plan::seconds), plan.map(|plan| plan.bytes));
-        rows.push(Planned {
-            claim: claim.id,
-            report: &report.report,
-            says: &claim.claim,
-            command,
-            seconds,
-            bytes,
-            why,
-        });
+/// Prints how the folders agree with earlier results.
+fn compare(arguments: &Arguments, earlier: &Path, lab: &Arc<Lab>) -> Result<()> {
+    check_folders(arguments)?;
+    if !earlier.is_dir() {
+        return Err(InputError::new("compare", earlier.display().to_string(), "there is no such folder").into());
     }
-    rows.sort_by_key(|row| row.claim);
-    if as_json {
-        return print_json(&rows);
+    let found = Agreement::of(lab, &arguments.folders, earlier)?;
+    if arguments.json {
+        print_json(&found)?;
+    } else {
+        print(&found.in_words())?;
     }
-    let line = |row: &Planned<'_>| {
-        let costs = row.seconds.zip(row.bytes).map(|(s, bytes)| format!("  # {s:.0} s, {:.1} MB", bytes as f64 / 1e6));
-        let how = if row.command.is_empty() { format!("- {}", row.why) } else { row.command.clone() };
-        format!("{:>3} {}  {}\n        {how}{}", row.claim, row.report, row.says, costs.unwrap_or_default())
-    };
-    print(&rows.iter().map(line).collect::<Vec<String>>().join("\n"))?;
-    let (mut seconds, mut bytes) = (0.0, 0);
-    for (_, plan) in plans.values().flatten() {
-        (seconds, bytes) = (seconds + plan.seconds(), bytes + plan.bytes);
+    match found.other_images() {
+        [] => Ok(()),
+        [first, ..] => {
+            let count = counted(found.other_images().len(), "image");
+            Err(Error::Check(format!("{count} with other bits, for example {first}")))
+        }
     }
-    let of = counted(plans.values().flatten().count(), "experiment");
-    print(&format!("\n{of}, each run once: about {seconds:.0} s, {:.0} MB", bytes as f64 / 1e6))
-}
-
-/// The command of an experiment at the reports' size, or else at the quick one, and its plan; `None` if there is no such
-/// experiment.
-fn plan_of(lab: &Arc<Lab>, name: &str, prices: &mut Prices<'_>) -> Result<Option<(String, Plan)>> {
-    if !Definition::known(lab).any(|(known, _)| known == name) {
-        return Ok(None);
-    }
-    let definition = Definition::load(lab, name)?;
-    let (profile, size) =
-        if definition.has(Profile::Reports) { (Profile::Reports, "--reports") } else { (Profile::Quick, "--quick") };
-    let options = Options { out: PathBuf::from("out"), profile, ..Options::default() };
-    let plan = Sweep::new(&definition, &options, &mut Files::default())?.plan(prices)?;
-    Ok(Some((shell::command(["run", name, size]), plan)))
 }
 
 fn row<'a>(answer: &'a Answer<'_>) -> Row<'a> {

@@ -12,7 +12,7 @@ use crate::measure::{COLUMNS, Column, OUTPUTS, WARNINGS, WarningEntry};
 use crate::metric::METRICS;
 use crate::report::FIGURES;
 use crate::sampling::SAMPLERS;
-use crate::scene::{ACCELERATORS, CAMERAS, FEATURES, FILTERS, GENERATORS, PROFILES, SHAPES, effect_names};
+use crate::scene::{ACCELERATORS, CAMERAS, FEATURES, FILTERS, GENERATORS, PROFILES, SCENE_KEYS, SHAPES, effect_names};
 use crate::simd::LEVELS;
 use crate::strategy::Entry as Strategy;
 use clap::builder::PossibleValuesParser;
@@ -23,7 +23,8 @@ pub(crate) struct Arguments {
     /// Kind of names to list [default: all]
     #[arg(value_parser = PossibleValuesParser::new(KINDS.iter().map(|(name, _)| *name)))]
     kind: Option<String>,
-    /// List only this name, such as a warning as it stands in a row, with or without its brackets
+    /// List only this name, such as a warning as it stands in a row, with or without its brackets; or the keys of this
+    /// table, as in `list keys scene` and `list keys scene.camera`
     name: Option<String>,
     /// Print an array of objects with name and about
     #[arg(long)]
@@ -125,7 +126,10 @@ const KINDS: &[(&str, Items)] = &[
         let experiment = |(name, _): (&str, &str)| Ok(item(name, &Definition::load(lab, name)?.title));
         Definition::known(lab).map(experiment).collect()
     }),
-    ("keys", |_| Ok(keys().map(|(key, about)| item(&key, &about)).collect())),
+    ("keys", |_| {
+        let of_scenes = SCENE_KEYS.iter().map(|key| item(&format!("scene.{}", key.path), &key.in_words()));
+        Ok(keys().map(|(key, about)| item(&key, &about)).chain(of_scenes).collect())
+    }),
     ("figures", named!(FIGURES)),
     ("columns", |_| Ok(COLUMNS.iter().map(|column| item(column.name, &about_column(column))).collect())),
     ("warnings", |_| {
@@ -134,13 +138,16 @@ const KINDS: &[(&str, Items)] = &[
     }),
 ];
 
-/// The item of this name. In rows, the numbers of the case follow a warning's name in brackets.
-fn only(mut items: Vec<Item>, kind: &str, name: &str) -> Result<Item> {
+/// The item of this name, and the keys below it. In rows, the numbers of the case follow a warning's name in brackets.
+fn named(items: Vec<Item>, kind: &str, name: &str) -> Result<Vec<Item>> {
     let wanted = name.split('(').next().unwrap_or_default().trim();
-    if let Some(place) = items.iter().position(|item| item.name == wanted) {
-        return Ok(items.swap_remove(place));
+    let is_wanted =
+        |item: &Item| item.name.strip_prefix(wanted).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
+    let (found, others): (Vec<Item>, Vec<Item>) = items.into_iter().partition(is_wanted);
+    if !found.is_empty() {
+        return Ok(found);
     }
-    let names: Vec<String> = items.into_iter().map(|item| item.name).collect();
+    let names: Vec<String> = others.into_iter().map(|item| item.name).collect();
     Err(InputError::new("name", name, format!("is none of the {kind}")).allowed(names.join(", ")).into())
 }
 
@@ -148,7 +155,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     if let Some((kind, items)) = KINDS.iter().find(|(name, _)| arguments.kind.as_deref() == Some(name)) {
         let mut items = items(lab)?;
         if let Some(name) = &arguments.name {
-            items = vec![only(items, kind, name)?];
+            items = named(items, kind, name)?;
         }
         return if arguments.json { print_json(&items) } else { print(&table(&items)) };
     }

@@ -13,6 +13,7 @@ mod machine;
 mod merge;
 mod new;
 mod overall_progress;
+mod plan_of_claims;
 mod prelude;
 mod price;
 mod rank;

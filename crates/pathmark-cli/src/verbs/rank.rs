@@ -23,8 +23,8 @@ pub(crate) struct Arguments {
 }
 
 /// The meaning of the letters.
-const LETTERS: &str =
-    "Schedules that share a letter cannot be told apart; all other orders hold together with 95 % confidence.";
+const LETTERS: &str = "The order is that of the times within the same repetitions, and each ratio is to the first schedule. Schedules that \
+share a letter cannot be told apart; all other orders hold together with 95 % confidence.";
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     if arguments.folder.exists() && !arguments.folder.is_dir() {

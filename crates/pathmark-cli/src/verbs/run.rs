@@ -97,6 +97,13 @@ impl Size {
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     let definition = Definition::load(lab, &arguments.experiment)?.with_values(&arguments.values)?;
     check_figures(&definition)?;
+    let kept: Vec<&str> = definition.kept_sizes(arguments.size.profile()).into_iter().collect();
+    if !kept.is_empty() {
+        console.note(&format!(
+            "matrices with a size of their own keep it: {}; --set size=WxH replaces it",
+            kept.join(", ")
+        ));
+    }
     let options = Options {
         out: arguments.out.clone(),
         profile: arguments.size.profile(),

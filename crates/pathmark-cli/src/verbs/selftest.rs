@@ -100,7 +100,8 @@ fn folder_for_results(out: &Path) -> Result<Lock> {
 fn chosen(names: &[String]) -> Result<Vec<&'static Case>> {
     for name in names {
         if !check::cases().any(|case| fits(case, name)) {
-            let known: Vec<&str> = check::cases().map(|case| case.id).collect();
+            let mut known: Vec<&str> = check::cases().map(|case| case.id).collect();
+            known.sort_by_key(|id| numbered(id));
             let error = InputError::new("case", name, "there is no such case");
             return Err(error.allowed(known.join(", ")).into());
         }
@@ -108,8 +109,16 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Case>> {
     Ok(check::cases().filter(|case| names.is_empty() || names.iter().any(|name| fits(case, name))).collect())
 }
 
+/// Whether a name is that of the case, with or without leading zeros, or the letter of its area.
 fn fits(case: &Case, name: &str) -> bool {
-    case.id == name || (name.len() == 1 && case.id.starts_with(name))
+    case.id == name
+        || (name.len() == 1 && case.id.starts_with(name))
+        || numbered(name).is_some_and(|number| numbered(case.id) == Some(number))
+}
+
+/// The letter and the number of a case's name.
+fn numbered(id: &str) -> Option<(char, u32)> {
+    Some((id.chars().next()?, id.get(1..)?.parse().ok()?))
 }
 
 /// The printed table: a line for each case, its failed or skipped trials, and with `in_full` all trials.

@@ -29,8 +29,11 @@ use crate::error::{Error, InputError, Result};
 use crate::input::{locate, locate_in, parse, read_text};
 use crate::lab::Lab;
 use crate::shell;
-use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
+use std::fmt;
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::Arc;
@@ -132,7 +135,7 @@ pub struct Definition {
     pub in_short: Option<NonZeroUsize>,
     pub figures: Vec<String>,
     /// Parameters of figures, by figure; each figure reads its own table.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "parameters")]
     pub figure: BTreeMap<String, toml::Table>,
     #[serde(default)]
     pub keep: Vec<Keep>,
@@ -158,6 +161,27 @@ pub struct Definition {
 
 fn last_place() -> u32 {
     u32::MAX
+}
+
+/// The tables of parameters. The key differs by one letter from the list of figures, so its error names both.
+struct Parameters;
+
+impl<'de> Visitor<'de> for Parameters {
+    type Value = BTreeMap<String, toml::Table>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a table [figure.NAME] of parameters; did you mean `figures`, the list of names?")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<Self::Value, A::Error> {
+        BTreeMap::deserialize(MapAccessDeserializer::new(map))
+    }
+}
+
+fn parameters<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> std::result::Result<BTreeMap<String, toml::Table>, D::Error> {
+    deserializer.deserialize_map(Parameters)
 }
 
 #[derive(Debug, Clone, Deserialize)]

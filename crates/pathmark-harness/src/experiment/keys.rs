@@ -72,6 +72,13 @@ mod tests {
     }
 
     #[test]
+    fn names_of_figures_under_the_key_of_their_parameters_are_told_the_right_key() {
+        let text = "title = \"t\"\nquestion = \"q\"\nfigure = [\"speedup\"]";
+        let told = Definition::from_text(&Lab::built_in(), "x", "x.toml", text).unwrap_err().to_string();
+        assert!(told.starts_with("x.toml:3:") && told.contains("did you mean `figures`"), "{told}");
+    }
+
+    #[test]
     fn missing_required_axes_are_named() {
         let matrix: Vec<String> = REQUIRED.iter().map(|axis| value(axis)).collect();
         for (index, axis) in REQUIRED.iter().enumerate() {

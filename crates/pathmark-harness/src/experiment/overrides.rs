@@ -7,11 +7,12 @@
 //! The result is the text of a complete definition. It is kept beside the rows and can be run again without the
 //! options.
 
-use super::Definition;
 use super::definition::REFERENCE_SPP;
+use super::{Definition, Profile};
 use crate::error::{InputError, Result};
 use crate::input::parse;
 use crate::measure::{Kind, SETTINGS, Setting, parse_size};
+use std::collections::BTreeSet;
 use toml::{Table, Value};
 
 /// The tables of profiles, which may hold a value instead of the matrix.
@@ -34,6 +35,17 @@ impl Definition {
         let mut changed = Self::from_text(&self.lab, &self.name, &self.file, &text)?;
         (changed.asked, changed.set) = (self.asked, [self.set, pairs.to_vec()].concat());
         Ok(changed)
+    }
+}
+
+impl Definition {
+    /// The sizes of matrices with one of their own, if values were set and no size is among them: the user may expect that of
+    /// the profile.
+    pub fn kept_sizes(&self, profile: Profile) -> BTreeSet<&str> {
+        if self.set.is_empty() || self.set.iter().any(|pair| pair.starts_with("size=")) {
+            return BTreeSet::new();
+        }
+        self.matrices(profile).filter_map(|matrix| matrix.values("size")).flatten().map(String::as_str).collect()
     }
 }
 

@@ -210,7 +210,8 @@ impl<'a> Sweep<'a> {
             let still = undecided.iter().filter(|index| cells[**index].at_most.is_none()).count();
             if until.is_some() && still < open {
                 open = still;
-                progress.note(&format!("{} of {without_limit} cells decided", without_limit - open));
+                progress
+                    .note(&format!("{} of {without_limit} cells decided: they reached the goal", without_limit - open));
             }
             let open_now: HashSet<usize> = undecided.iter().copied().collect();
             for block in shuffled(blocks.len(), &definition.name, repetition) {

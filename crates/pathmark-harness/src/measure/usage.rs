@@ -149,7 +149,8 @@ impl ForeignLoad {
 impl fmt::Display for ForeignShares {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [programs, host] = [self.programs, self.host].map(|share| 100.0 * share);
-        write!(f, "other programs took {programs:.1} % of the processors in these {:.0} s", self.seconds)?;
+        let digits = usize::from(self.seconds < 10.0);
+        write!(f, "other programs took {programs:.1} % of the processors in these {:.digits$} s", self.seconds)?;
         if host < 0.05 { Ok(()) } else { write!(f, ", and the host of this virtual machine {host:.1} %") }
     }
 }
@@ -200,7 +201,7 @@ mod tests {
     #[test]
     fn the_host_is_told_apart_from_programs() {
         let shares = ForeignShares { programs: 0.031, host: 0.12, seconds: 4.2 };
-        let told = "other programs took 3.1 % of the processors in these 4 s";
+        let told = "other programs took 3.1 % of the processors in these 4.2 s";
         assert_eq!(shares.to_string(), format!("{told}, and the host of this virtual machine 12.0 %"));
         assert_eq!(ForeignShares { host: 0.0, ..shares }.to_string(), told);
     }

@@ -57,7 +57,7 @@ impl Answer<'_> {
         self.is_judged() && self.found.is_some() && self.age != Age::BoundFirst
     }
 
-    fn is_judged(&self) -> bool {
+    pub(super) fn is_judged(&self) -> bool {
         !matches!(self.verdict, Verdict::NotAnswered | Verdict::NotComparable | Verdict::Measured)
     }
 }

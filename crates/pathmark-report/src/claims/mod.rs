@@ -3,6 +3,7 @@
 //! A claim names the rows that answer it, a statistic, and the values that the report predicts for it (see `definition.rs`). To add one, add
 //! it to `experiments/claims/REPORT.toml`.
 
+mod agreement;
 mod condition;
 mod definition;
 mod judge;
@@ -17,6 +18,7 @@ mod statistic;
 mod tests;
 mod verdict;
 
+pub use agreement::Agreement;
 pub use definition::{Claim, Needs, Report};
 pub use judge::{Answer, judge};
 pub use listing::{FOLDER, Listing, MARKDOWN, is_markdown, totals};

@@ -34,7 +34,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let claimed = median(&whole.map(|told| told.value).collect::<Vec<f64>>());
     let finding = claimed.map(|claimed| {
         Block::finding(format!(
-            "Timed with clock(), which a comment in report A's listing proposes, {processors} threads would seem to bring a speedup of {claimed:.2} \
+            "Timed with clock() of the C library, {processors} threads would seem to bring a speedup of {claimed:.2} \
              (median over the strategies): clock() adds up the CPU time of all threads, and the work stays the same. All other numbers here are wall time."
         ))
     });

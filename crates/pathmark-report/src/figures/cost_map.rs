@@ -39,7 +39,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         tiles,
     };
     let finding = format!(
-        "The dearest tile takes {most:.2} ms, {:.1} times as long as the cheapest ({least:.2} ms).",
+        "The most expensive tile takes {most:.2} ms, {:.1} times as long as the cheapest ({least:.2} ms).",
         most / least
     );
     Ok(vec![Block::figure("cost-map", map), Block::finding(finding)])

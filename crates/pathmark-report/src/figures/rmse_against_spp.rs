@@ -90,7 +90,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             let verdict = if interval.contains(-0.5) { "contains" } else { "does not contain" };
             findings.push(Block::finding(format!(
                 "{name}: RMSE falls as spp to the power {slope:.3}; the 95 % interval over {} seeds, {:.3} to {:.3}, {verdict} -1/2. \
-                 Halving the error so takes {:.2} times the samples ({:.2} to {:.2}).",
+                 Half the error therefore takes {:.2} times the samples ({:.2} to {:.2}).",
                 fit.seeds,
                 interval.low,
                 interval.high,

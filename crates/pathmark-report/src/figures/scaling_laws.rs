@@ -35,8 +35,8 @@ fn in_words(law: Law, points: &[Point]) -> [String; 2] {
             if let Some(peak) = &fitted.peak {
                 parameters.push(format!("peak at p = {:.0}, {}", peak.value, with_level(&peak.interval, 0)));
             }
-            let counts = fitted.worker_counts;
-            [parameters.join("; "), format!("{}; {counts} thread counts above 1", fitted.check)]
+            let counts = counted(fitted.worker_counts, "thread count");
+            [parameters.join("; "), format!("{}; {counts} above 1", fitted.check)]
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Timelines: a lane for each worker, and the shares of workers times makespan.
 
 use crate::analysis::balance::Balance;
+use crate::measure::TimingConcerns;
 use crate::plot::Schedule;
 use crate::prelude::*;
 use crate::timeline;
@@ -15,7 +16,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut groups: Vec<_> = groups.into_iter().collect();
     groups.sort_by_key(|((schedule, ..), _)| (schedule.key.threads > processors, !schedule.is_serial()));
     for ((schedule, series, _), rows) in groups {
-        let Some(row) = Results::typical(&rows) else { continue };
+        // A disturbed run shows the disturbance instead of the schedule.
+        let quiet: Vec<&Row> = rows.iter().copied().filter(|row| !TimingConcerns::concern(&row.warnings)).collect();
+        let Some(row) = Results::typical(&quiet).or_else(|| Results::typical(&rows)) else { continue };
         let Some(trace) = results.trace(row)? else { continue };
         let Some(balance) = timeline::balance(&trace) else { continue };
         let lanes = timeline::lanes(&trace, &balance, processors);
@@ -33,7 +36,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let chart = |title: &str, schedules: Vec<Schedule>, more: &str| {
         let mut chart = timeline::charts(schedules, results.workload());
         chart.title += title;
-        chart.caption = format!("Of each schedule the run with the median time. {}{more}", chart.caption);
+        chart.caption = format!(
+            "Of each schedule the run with the median time, if possible of those without doubts. {}{more}",
+            chart.caption
+        );
         chart
     };
     let mut blocks = Vec::new();

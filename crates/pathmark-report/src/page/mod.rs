@@ -324,7 +324,7 @@ fn section(section: &Section, is_chapter: bool, styles: &mut Styles) -> Result<M
             @if section.doubts.is_any() { p.doubts.high[section.doubts.is_high()] { (section.doubts) "; " code { "pathmark list warnings" } " says what each means." } }
             @if let Some(goal) = section.run.as_ref().and_then(|run| run.until.as_ref()) {
                 p.doubts {
-                    "Repetitions went on until the goal " code { (goal) } " or a limit was reached. Intervals of medians hold all the same; those of fitted lines take the number of repetitions for fixed."
+                    "Repetitions went on until the goal " code { (goal) } " or a limit was reached. Intervals of medians hold nevertheless; those of fitted lines assume a fixed number of repetitions."
                 }
             }
             @for part in &parts { (part) }

@@ -8,6 +8,7 @@ mod faults;
 mod fog;
 mod generator;
 mod hierarchy;
+mod keys;
 mod library;
 mod light;
 mod point_light;
@@ -25,6 +26,7 @@ pub use hierarchy::{
     ACCELERATORS, Bounds, DEEPEST, Entry as Accelerator, Faces, Hierarchy, Node, Scan, Slabs, Tests, accelerator,
     padding,
 };
+pub use keys::{SCENE_KEYS, SceneKey};
 pub use library::{CustomScene, Library, SCENES, load};
 pub use light::{Aim, Lights, one_minus_cos};
 pub use light::{AnyTarget, NO_LIGHT, TriangleTarget, per_steradian, point_of, towards_cap};
