@@ -39,6 +39,9 @@ fn schedules_of_one_speed_share_a_group_and_others_do_not() {
     let printed = run(folder.path(), &["rank", "ranked"], 0);
     assert!(printed.out.contains("ratio") && printed.out.lines().any(|line| line.contains("  c ")), "{}", printed.out);
     assert!(!printed.err.contains("--repetitions"), "{}", printed.err);
+    let latex = run(folder.path(), &["rank", "ranked", "--latex"], 0);
+    assert!(latex.out.contains("\\begin{tabular}{lrrrl}"), "{}", latex.out);
+    assert!(latex.out.contains(" & 1.000 & ") && latex.out.contains(" & c \\\\\n"), "{}", latex.out);
 }
 
 #[test]

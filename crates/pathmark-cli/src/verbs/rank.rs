@@ -4,6 +4,7 @@ use super::prelude::*;
 use super::run::note_doubts;
 use crate::error::printable;
 use crate::experiment::{ImageRanking, Place, Ranking, ranking};
+use crate::report::latex::tabular;
 
 /// `pathmark rank out/thread-scaling --filter threads=2`
 #[derive(Args)]
@@ -16,7 +17,12 @@ pub(crate) struct Arguments {
     /// Print the ranking as one JSON object
     #[arg(long)]
     json: bool,
+    /// Print the ranking as tables for LaTeX, which need its package booktabs
+    #[arg(long, conflicts_with = "json")]
+    latex: bool,
 }
+
+const RULE: &str = "Schedules that share a letter cannot be told apart; all other orders hold together with 95 % confidence.";
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     if arguments.folder.exists() && !arguments.folder.is_dir() {
@@ -26,12 +32,13 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     let found = ranking(lab, &arguments.folder, &arguments.filter)?;
     if arguments.json {
         print_json(&object(&found))?;
+    } else if arguments.latex {
+        let tables: String = found.images.iter().map(latex).collect();
+        print(&format!("{tables}% {RULE}"))?;
     } else {
         let tables: Vec<String> = found.images.iter().map(table).collect();
         print(&tables.join("\n\n"))?;
-        print(
-            "\nSchedules that share a letter cannot be told apart; all other orders hold together with 95 % confidence.",
-        )?;
+        print(&format!("\n{RULE}"))?;
     }
     if found.images.iter().any(|image| image.part[1] > 1) {
         console
@@ -57,16 +64,38 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     Ok(())
 }
 
+/// Ratio, interval and milliseconds of a schedule.
+fn numbers(place: &Place) -> [String; 3] {
+    let interval = place.interval.map_or_else(|| "-".to_string(), |i| format!("{:.3} to {:.3}", i.low, i.high));
+    let ratio = place.ratio.map_or_else(|| "-".to_string(), |ratio| format!("{ratio:.3}"));
+    [ratio, interval, format!("{:.1}", 1e3 * place.median_s)]
+}
+
+/// The image, and its part if there are several.
+fn title(image: &ImageRanking) -> String {
+    let [part, parts] = image.part;
+    let of_part = if parts > 1 { format!(", part {part} of {parts}") } else { String::new() };
+    format!("{}{of_part}", printable(&image.image))
+}
+
+fn latex(image: &ImageRanking) -> String {
+    let heads = ["schedule", "ratio", "interval", "median, ms", "groups"].map(str::to_string);
+    let row = |place: &Place| {
+        let [ratio, interval, median_ms] = numbers(place);
+        vec![place.schedule.clone(), ratio, interval, median_ms, letters(&place.groups)]
+    };
+    let rows: Vec<Vec<String>> = image.places.iter().map(row).collect();
+    format!("% {}\n{}", title(image), tabular(&heads, &rows))
+}
+
 fn table(image: &ImageRanking) -> String {
     let width = image.places.iter().map(|place| letters(&place.groups).len()).max().unwrap_or(0).max("groups".len());
     let head = format!("{:>8} {:>16} {:>11}  {:width$}  schedule", "ratio", "interval", "median", "groups");
     let line = |place: &Place| {
-        let interval = place.interval.map_or_else(|| "-".to_string(), |i| format!("{:.3} to {:.3}", i.low, i.high));
-        let ratio = place.ratio.map_or_else(|| "-".to_string(), |ratio| format!("{ratio:.3}"));
-        let (median_ms, schedule) = (1e3 * place.median_s, printable(&place.schedule));
-        format!("{ratio:>8} {interval:>16} {median_ms:>8.1} ms  {:width$}  {schedule}", letters(&place.groups))
+        let ([ratio, interval, median_ms], schedule) = (numbers(place), printable(&place.schedule));
+        format!("{ratio:>8} {interval:>16} {median_ms:>8} ms  {:width$}  {schedule}", letters(&place.groups))
     };
-    let ImageRanking { fastest, compared, places, part: [part, parts], .. } = image;
+    let ImageRanking { fastest, compared, places, .. } = image;
     let of = if *compared < places.len() {
         format!("{compared} (the matrix of the others has fewer repetitions)")
     } else {
@@ -79,9 +108,7 @@ fn table(image: &ImageRanking) -> String {
         (all, left) if left == all => format!("any of {of} may be the fastest"),
         _ => format!("with 95 % confidence, the fastest of {of} is among: {}", printable(&fastest.join(", "))),
     };
-    let of_part = if *parts > 1 { format!(", part {part} of {parts}") } else { String::new() };
-    let lines =
-        [format!("{}{of_part}", printable(&image.image)), head].into_iter().chain(image.places.iter().map(line));
+    let lines = [title(image), head].into_iter().chain(image.places.iter().map(line));
     lines.chain([fastest]).collect::<Vec<_>>().join("\n")
 }
 
