@@ -22,7 +22,8 @@ pub(crate) struct Arguments {
     latex: bool,
 }
 
-const RULE: &str = "Schedules that share a letter cannot be told apart; all other orders hold together with 95 % confidence.";
+const RULE: &str =
+    "Schedules that share a letter cannot be told apart; all other orders hold together with 95 % confidence.";
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     if arguments.folder.exists() && !arguments.folder.is_dir() {

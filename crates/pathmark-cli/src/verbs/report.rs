@@ -25,7 +25,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     if let Some(paper) = paper {
         files.writes("paper", paper)?;
         if paper.exists() {
-            let error = InputError::new("paper", paper.display().to_string(), "already exists, and may have been edited");
+            let error =
+                InputError::new("paper", paper.display().to_string(), "already exists, and may have been edited");
             return Err(error.allowed("another file").into());
         }
     }

@@ -50,7 +50,10 @@ impl Pictures {
         let cell = |Picture { caption, image }: &Picture| Cell::of(image, caption.clone());
         let groups = self.groups.iter().map(|group| group.iter().map(cell).collect::<Result<Vec<Cell>>>());
         let groups = groups.collect::<Result<Vec<_>>>()?;
-        Block::sheet("equal-time", &ContactSheet::groups(self.title, self.subtitle.to_string(), groups, Comparison::Wipe))
+        Block::sheet(
+            "equal-time",
+            &ContactSheet::groups(self.title, self.subtitle.to_string(), groups, Comparison::Wipe),
+        )
     }
 }
 

@@ -139,7 +139,8 @@ impl Table {
 
     /// Whether a value has an interval.
     pub(crate) fn has_intervals(&self) -> bool {
-        let has_interval = |entry: &TableCell| matches!(entry, TableCell::Estimated(Some(told), _) if told.interval.is_some());
+        let has_interval =
+            |entry: &TableCell| matches!(entry, TableCell::Estimated(Some(told), _) if told.interval.is_some());
         self.columns.iter().flat_map(|column| &column.entries).any(has_interval)
     }
 
