@@ -8,6 +8,7 @@ mod command_line;
 mod commands;
 mod device_rows;
 mod diff;
+mod equal_time;
 #[path = "../support/experiment.rs"]
 mod experiment;
 mod external;

@@ -3,7 +3,7 @@
 use super::block::Block;
 use super::figures::blocks;
 use super::plot::drawing::Note;
-use super::tests::{results, row, svg, words};
+use super::tests::{results, row, svg, table, words};
 use crate::measure::Record;
 
 /// The values that the figure of that name draws.
@@ -154,4 +154,31 @@ fn three_points_have_no_slope() {
         words(&blocks(&results(&["rmse-against-spp"], "", noisy.collect()).unwrap()).unwrap())
     };
     assert!(text(&[4, 8, 16, 32]).contains("5 seeds") && !text(&[4, 8, 16]).contains("fit: slope"));
+}
+
+/// Squared errors of 1, 2 and 3 hundredths have the mean 0.02, whatever samples each seed and repetition reached.
+#[test]
+fn errors_under_a_time_limit_are_over_all_seeds() {
+    let of = |factor: f64| {
+        let mut rows = Vec::new();
+        for (estimator, factor) in [("bsdf", 1.0), ("nee", factor)] {
+            for (seed, repetition) in (1..=3).flat_map(|seed| [(seed, 0), (seed, 1)]) {
+                let (estimator, mse) = (estimator.to_string(), Some(0.01 * factor * seed as f64));
+                let limited = Record { time_limit_s: Some(0.5.into()), makespan_s: Some(0.49), ..row() };
+                rows.push(Record { estimator, seed, repetition, mse, spp: 10 * seed as u32 + repetition, ..limited });
+            }
+        }
+        blocks(&results(&["equal-time"], "", rows).unwrap()).unwrap()
+    };
+    let blocks = of(0.01);
+    let shown: Vec<Vec<String>> = table(&blocks).rows().collect();
+    assert_eq!(shown.len(), 2, "{shown:?}");
+    assert_eq!(shown[0][..3], ["cornell", "0.5", "bsdf"]);
+    assert!(shown[0][3].starts_with("0.141, ") && shown[1][3].starts_with("0.0141, "), "{shown:?}");
+    assert_eq!(shown[0][5..], ["10 to 30", "3"]);
+    let told = words(&blocks);
+    assert!(told.contains("cornell after 0.5 s: nee has the smallest RMSE, 0.0141 ("), "{told}");
+    assert!(told.contains("The intervals of all others lie above it."), "{told}");
+    let told = words(&of(0.5));
+    assert!(told.contains("Not told apart from it, because the intervals overlap: bsdf."), "{told}");
 }

@@ -4,14 +4,17 @@ pub mod bursts;
 pub mod claims;
 mod class;
 mod contenders;
+mod crops;
 mod estimated;
 #[cfg(test)]
 mod figure_tests;
 mod figures;
 pub mod forecasts;
+pub mod latex;
 mod page;
 #[cfg(test)]
 mod pairing_tests;
+mod paper;
 pub mod plot;
 mod prelude;
 pub mod rank_forecasts;
@@ -27,6 +30,7 @@ mod trace_tests;
 pub mod why;
 mod words;
 
+pub use crops::Crop;
 pub use estimated::{Estimated, LEVEL};
 pub use figures::{FIGURES, FigureEntry, check_figures, figure_of_serial};
 pub use page::benches::{BenchRow, write_benches};
@@ -40,6 +44,7 @@ use crate::files::Files;
 use crate::lab::Lab;
 use class::{Class, Member, members};
 use page::{Section, benches, block, doctor, guards, table};
+use paper::Part;
 use pathmark_harness::{
     analysis, atomic_file, cases_file, cluster, csv_file, digest, error, experiment, files, film_file, guard_prices,
     image_io, input, kernel, lab, measure, metric, scene, shell, simulate, strategy,
@@ -98,4 +103,42 @@ pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
     let html = page::html(&sections)?;
     atomic_file::write(&page, |file| file.write_all(html.as_bytes()))?;
     Ok(page)
+}
+
+/// Writes `crops.png` beside the figures of each experiment of a folder that draws the figure `equal-time`; returns the
+/// paths. Refuses a folder without such an experiment.
+pub fn write_crops(lab: &Arc<Lab>, out: &Path, crops: &[Crop]) -> Result<Vec<PathBuf>> {
+    let mut paths = Vec::new();
+    for Member { folder, .. } in members(out)? {
+        let results = Results::read(lab, folder.parent().unwrap_or(out), &folder)?;
+        if !results.definition.figures.iter().any(|figure| figure == "equal-time") {
+            continue;
+        }
+        if let Some(block) = crops::block(&results, crops)? {
+            let figures = folder.join("figures");
+            block.save(&figures)?;
+            paths.push(figures.join(crops::STEM).with_extension("png"));
+        }
+    }
+    if paths.is_empty() {
+        let problem = "has no experiment whose pictures can be cropped";
+        let error = InputError::new("folder", out.display().to_string(), problem);
+        return Err(error.allowed("an experiment with the figure `equal-time` and keep = [\"images\"]").into());
+    }
+    Ok(paths)
+}
+
+/// Writes a draft of a paper on the experiments of a folder, whose figures have been drawn.
+pub fn write_paper(lab: &Arc<Lab>, out: &Path, file: &Path) -> Result<()> {
+    let mut parts = Vec::new();
+    for Member { folder, .. } in members(out)? {
+        let results = Results::read(lab, folder.parent().unwrap_or(out), &folder)?;
+        let blocks = figures::blocks(&results)?;
+        parts.push(Part { results, blocks });
+    }
+    let complete = |path: &Path| path.canonicalize().map_err(|e| Error::system("looking for", path, e));
+    let beside = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let way = paper::way(&complete(beside)?, &complete(out)?);
+    let text = paper::text(&parts, &way.display().to_string().replace('\\', "/"));
+    atomic_file::write(file, |file| file.write_all(text.as_bytes()))
 }

@@ -17,6 +17,7 @@ use crate::analysis::{Estimate, Interval};
 use crate::experiment::{Pilot, Piloted, law_of, pay, run_pilots};
 use crate::kernel::Spec;
 use crate::measure::{LARGEST_SEED, LARGEST_SPP, TimingConcerns};
+use crate::report::latex::tabular;
 use std::collections::BTreeSet;
 
 const LEVEL: f64 = 0.95;
@@ -58,6 +59,9 @@ pub(crate) struct Arguments {
     /// Print an array of JSON objects
     #[arg(long)]
     json: bool,
+    /// Print a table for LaTeX, which needs its package booktabs
+    #[arg(long, conflicts_with = "json")]
+    latex: bool,
 }
 
 /// A goal, its price, and the measured time and error.
@@ -151,6 +155,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     }
     if arguments.json {
         return print_json(&priced);
+    }
+    if arguments.latex {
+        return print(latex(&priced).trim_end());
     }
     if is_comparison {
         texts.push(ranking(&arguments.rmse, &priced));
@@ -297,6 +304,25 @@ fn row(
     })
 }
 
+/// A row for each estimator and goal, with the letters of its groups if estimators were compared.
+fn latex(rows: &[Row]) -> String {
+    let is_comparison = rows.iter().any(|row| !row.groups.is_empty());
+    let groups = is_comparison.then_some("groups");
+    let heads = ["estimator", "RMSE", "spp", "interval", "seconds", "interval"].into_iter().chain(groups);
+    let line = |row: &Row| {
+        let cells = [
+            row.estimator.clone(),
+            row.rmse.to_string(),
+            row.spp.to_string(),
+            format!("{} to {}", row.counts.whole(row.spp_low), row.counts.whole(row.spp_high)),
+            format!("{:.3}", row.seconds),
+            format!("{:.3} to {:.3}", row.seconds_low, row.seconds_high),
+        ];
+        cells.into_iter().chain(is_comparison.then(|| letters(&row.groups))).collect()
+    };
+    tabular(&heads.map(str::to_string).collect::<Vec<_>>(), &rows.iter().map(line).collect::<Vec<_>>())
+}
+
 fn table(settings: &Settings, arguments: &Arguments, piloted: &Piloted, rows: &[Row]) -> String {
     let (spec, Piloted { renderer, tail, .. }) = (&settings.spec, piloted);
     let Interval { low, high, .. } = renderer.seconds_per_spp.interval;
@@ -384,6 +410,8 @@ mod tests {
             Some(estimate(value, value / width, value * width))
         };
         group(0.1, &mut rows, ratio);
+        let table = latex(&rows);
+        assert!(table.contains("b & 0.1 & 0 & 0 to 0 & 3.000 & 0.000 to 0.000 & a b \\\\\n"), "{table}");
         let text = ranking(&[0.1], &rows);
         let (line, rule) = text.split_once('\n').unwrap();
         assert_eq!(line, "RMSE 0.1: a 1.500 s (a), b 3.000 s (a b), c 4.500 s (b), d 9.000 s (c)");

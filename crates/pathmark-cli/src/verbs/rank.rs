@@ -5,6 +5,7 @@ use super::run::note_doubts;
 use crate::console::markdown;
 use crate::error::printable;
 use crate::experiment::{ImageRanking, Place, Ranking, ranking};
+use crate::report::latex::tabular;
 
 /// `pathmark rank out/thread-scaling --filter threads=2`
 #[derive(Args)]
@@ -20,10 +21,13 @@ pub(crate) struct Arguments {
     /// Print the ranking as tables in Markdown
     #[arg(long, conflicts_with = "json")]
     markdown: bool,
+    /// Print the ranking as tables for LaTeX, which need its package booktabs
+    #[arg(long, conflicts_with_all = ["json", "markdown"])]
+    latex: bool,
 }
 
-/// The meaning of the letters.
-const LETTERS: &str = "The order is that of the times within the same repetitions, and each ratio is to the first schedule. Schedules that \
+/// The meaning of order and letters.
+const RULE: &str = "The order is that of the times within the same repetitions, and each ratio is to the first schedule. Schedules that \
 share a letter cannot be told apart; all other orders hold together with 95 % confidence.";
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
@@ -34,10 +38,13 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     let found = ranking(lab, &arguments.folder, &arguments.filter)?;
     if arguments.json {
         print_json(&object(&found))?;
+    } else if arguments.latex {
+        let tables: String = found.images.iter().map(latex).collect();
+        print(&format!("{tables}% {RULE}"))?;
     } else {
         let shown = if arguments.markdown { in_markdown } else { table };
         let tables: Vec<String> = found.images.iter().map(shown).collect();
-        print(&format!("{}\n\n{LETTERS}", tables.join("\n\n")))?;
+        print(&format!("{}\n\n{RULE}", tables.join("\n\n")))?;
     }
     if found.images.iter().any(|image| image.part[1] > 1) {
         console
@@ -61,6 +68,16 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     }
     note_doubts(&found.doubts, console);
     Ok(())
+}
+
+fn latex(image: &ImageRanking) -> String {
+    let heads = ["schedule", "ratio", "interval", "median", "groups"].map(str::to_string);
+    let row = |place: &Place| {
+        let [ratio, interval, median, groups, _] = cells(place);
+        vec![place.schedule.clone(), ratio, interval, median, groups]
+    };
+    let rows: Vec<Vec<String>> = image.places.iter().map(row).collect();
+    format!("% {}\n{}", title(image), tabular(&heads, &rows))
 }
 
 fn table(image: &ImageRanking) -> String {

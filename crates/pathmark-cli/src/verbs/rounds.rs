@@ -39,7 +39,7 @@ impl Until {
     /// Puts the goal into the record.
     pub(super) fn label(&self, record: &mut Record) {
         record.target_error = self.target_error;
-        record.time_limit_s = self.time_limit;
+        record.time_limit_s = self.time_limit.map(Into::into);
     }
 }
 

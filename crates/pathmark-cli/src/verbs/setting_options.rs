@@ -68,6 +68,7 @@ fn parser(axis: &Setting) -> ValueParser {
         Kind::Switch => value_parser!(bool),
         Kind::Count => value_parser!(u16).into(),
         Kind::Samples => value_parser!(u32).into(),
+        Kind::Seconds => value_parser!(f64).into(),
         Kind::Seed => value_parser!(u64).into(),
         Kind::Workers => value_parser!(usize).into(),
         Kind::Name | Kind::Auto | Kind::Size => ValueParser::string(),

@@ -172,7 +172,8 @@ impl CellJob {
                 TraceFile::new(&setup, &outcome).write(path)?;
             }
             let row = self.row(point, &setup, &outcome, references.as_ref())?;
-            if !self.stays {
+            // With a time limit each run has an image of its own, which must be compared anew.
+            if !self.stays || self.settings.time_limit_s.is_some() {
                 return Ok(vec![row]);
             }
             let runs = batch_runs(outcome.makespan_s);

@@ -22,7 +22,7 @@
 
 use super::comparisons::Compare;
 use super::stopping_rule::StoppingRule;
-use super::table::{Matrix, Scale, one_or_many};
+use super::table::{Matrix, Scale, TIME_LIMIT, one_or_many};
 use super::texts::experiments;
 use super::{External, Profile, Timeout};
 use crate::error::{Error, InputError, Result};
@@ -298,7 +298,11 @@ impl Definition {
         let times = if self.matrices(profile).all(|matrix| matrix.curve) { 4 } else { 10 };
         let needed = largest.saturating_mul(times);
         let spp = scale.reference_spp.unwrap_or(needed);
-        if spp >= needed {
+        // A time limit ends renders at numbers of samples that nobody knows in advance.
+        let is_limited = |table: Option<&Vec<String>>| table.is_some_and(|limits| !limits.is_empty());
+        let is_open = is_limited(scale.values(TIME_LIMIT))
+            || self.matrices(profile).any(|matrix| is_limited(matrix.values(TIME_LIMIT)));
+        if spp >= needed || is_open && scale.reference_spp.is_some() {
             return Ok(Some((table.estimator.clone(), spp)));
         }
         let problem = format!("each half-reference needs {times} times the samples of the largest spp");

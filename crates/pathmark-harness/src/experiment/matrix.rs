@@ -2,7 +2,7 @@
 
 use super::definition::FEATURES;
 use super::processes::check_processes;
-use super::table::{Matrix, Scale};
+use super::table::{Matrix, Scale, TIME_LIMIT};
 use super::{Cell, Definition, Profile};
 use crate::error::{Error, InputError, Result};
 use crate::measure::{ImageKey, Kind, LARGEST_SEED, SETTINGS, ScheduleKey, Setting, Settings, Setup};
@@ -67,6 +67,7 @@ impl Definition {
         for matrix in self.matrices(profile) {
             let product = Product { definition: self, profile, scale: self.scale(profile)?, matrix };
             product.check_axes()?;
+            product.check_time_limit()?;
             product.check_combinations(&mut combinations)?;
             product.add(&SETTINGS, &Settings::default(), &mut cells)?;
         }
@@ -112,6 +113,25 @@ impl<'a> Product<'a> {
         let problem = "has no values, so there is nothing to run";
         SETTINGS.iter().find(is_empty).map_or(Ok(()), |axis| {
             Err(self.at_field(InputError::new(axis.name, "[]", problem).allowed("at least one value").into()))
+        })
+    }
+
+    /// Refuses, beside a time limit, what fixes the number of samples: a curve, several `spp`, or processes that share the
+    /// samples in advance.
+    fn check_time_limit(&self) -> Result<()> {
+        let count = |name| Setting::named(name).map_or(0, |axis| self.values(axis).count());
+        if count(TIME_LIMIT) == 0 {
+            return Ok(());
+        }
+        let spps = count("spp");
+        let conflicts = [
+            (self.matrix.curve, "curve", "true".to_string(), "false, or no time-limit"),
+            (spps > 1, "spp", format!("{spps} values"), "one value, the most samples per pixel"),
+            (count("ranks") > 0, "ranks", "processes".to_string(), "no ranks, or no time-limit"),
+        ];
+        conflicts.into_iter().find(|(is_there, ..)| *is_there).map_or(Ok(()), |(_, field, value, allowed)| {
+            let problem = "fixes the samples, but a time limit ends the render";
+            Err(self.at_field(InputError::new(field, value, problem).allowed(allowed).into()))
         })
     }
 
@@ -181,7 +201,7 @@ impl<'a> Product<'a> {
         }
         let setup = self.definition.lab.prepare(settings).map_err(|error| self.at_field(error))?;
         check_processes(&setup).map_err(|error| self.at_field(error))?;
-        if self.matrix.curve {
+        if self.matrix.curve || setup.settings().time_limit_s.is_some() {
             setup.check_rounds().map_err(|error| self.at_field(error))?;
         }
         let at_most = self.matrix.at_most.filter(|most| *most < self.scale.repetitions);

@@ -96,12 +96,17 @@ fn value_of(axis: &Setting, values: &str) -> Result<Value> {
         let parsed = value.parse().map(Value::Boolean);
         parsed.map_err(|_| InputError::new(axis.name, value, "is not true or false").into())
     };
+    let seconds = |value: &str| -> Result<Value> {
+        let parsed = value.parse().map(Value::Float);
+        parsed.map_err(|_| InputError::new(axis.name, value, "is not a number").into())
+    };
     Ok(match axis.kind {
         Kind::Size => {
             let (width, height) = parse_size(values)?;
             Value::Array(vec![Value::Integer(width.into()), Value::Integer(height.into())])
         }
         Kind::Switch => Value::Array(each.map(switch).collect::<Result<_>>()?),
+        Kind::Seconds => Value::Array(each.map(seconds).collect::<Result<_>>()?),
         Kind::Name | Kind::Auto => Value::Array(each.map(Value::from).collect()),
         Kind::Workers => {
             let workers = |value: &str| if value == "all" { Ok(value.into()) } else { number(axis.name, value) };

@@ -144,6 +144,7 @@ impl Sweep<'_> {
             let repetitions = cell.repetitions(repetitions);
             let run_s =
                 if cell.external.is_none() { cell.weight as f64 * prices.sample_s(&cell.settings)? } else { 0.0 };
+            let run_s = cell.settings.time_limit_s.map_or(run_s, |limit| run_s.min(limit.into()));
             // A process of pairs runs its cell once before it counts, unless that takes long.
             let (rows, runs) = if side_by_side.contains(&index) {
                 let pairs = affordable(self.pairs()?, run_s);

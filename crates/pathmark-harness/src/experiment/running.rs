@@ -84,7 +84,7 @@ impl<'a> Running<'a> {
         let images: HashMap<&str, &str> = points.map(|point| (point.id.as_str(), point.image.as_str())).collect();
         for record in &done {
             if let Some(image) = images.get(record.cell.as_str()) {
-                running.checksums.entry((*image).to_string()).or_insert_with(|| record.checksum.clone());
+                running.checksums.entry(image_of(record, image)).or_insert_with(|| record.checksum.clone());
             }
             running.note(record);
         }
@@ -185,7 +185,8 @@ impl<'a> Running<'a> {
     /// The row with its number and the results of all checks, for the file.
     fn checked(&mut self, record: Record, image: &str) -> Record {
         let record = Record { run_order: self.order, ..record };
-        let mut record = verified(record, image, &mut self.checksums);
+        let image = image_of(&record, image);
+        let mut record = verified(record, &image, &mut self.checksums);
         self.drift.watch(&mut record);
         if !record.error.is_empty() {
             self.summary.add_failure(&record.error);
@@ -312,6 +313,11 @@ fn serial_runs(cells: &[Cell]) -> Vec<Option<usize>> {
         serial.iter().find(is_on_its_pieces).or(serial.first()).copied()
     };
     cells.iter().map(serial_of).collect()
+}
+
+/// The image of a row in one word: the planned one, or with a time limit that of the samples that were reached.
+fn image_of(record: &Record, planned: &str) -> String {
+    if record.time_limit_s.is_some() { record.image_key().to_string() } else { planned.to_string() }
 }
 
 /// Marks a row as failed if its checksum differs from that of earlier rows of its image: a schedule must not change a

@@ -43,6 +43,9 @@ pub(super) type Scale = Table<true>;
 /// The axes that a matrix cannot leave out.
 pub(super) const REQUIRED: &[&str] = &["scene", "spp", "strategy", "threads", "decomposition"];
 
+/// The axis that ends renders by time.
+pub(super) const TIME_LIMIT: &str = "time-limit";
+
 const TIMEOUT: &str = "timeout";
 
 /// The field of a profile for the pairs of a process.
@@ -147,6 +150,7 @@ impl<'de> DeserializeSeed<'de> for Values {
             Kind::Switch => words(&Vec::<bool>::deserialize(from)?),
             Kind::Count => words(&Vec::<u16>::deserialize(from)?),
             Kind::Samples => words(&Vec::<u32>::deserialize(from)?),
+            Kind::Seconds => words(&Vec::<f64>::deserialize(from)?),
             Kind::Seed => words(&Vec::<u64>::deserialize(from)?),
             Kind::Workers => Vec::<Threads>::deserialize(from)?.iter().map(|own| own.count().to_string()).collect(),
             // All cells have the same size, so it is not a list.

@@ -34,7 +34,7 @@ impl Column {
 
     pub fn values(&self) -> &'static str {
         let kind = self.kind;
-        if kind.contains("f64") {
+        if kind.contains("f64") || kind.contains("Seconds") {
             "number"
         } else if kind.contains("String") {
             "text"

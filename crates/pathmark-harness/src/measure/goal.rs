@@ -7,12 +7,12 @@
 //! Looks follow from the film alone, so a render that was stopped in between ends in the same way. Between looks, a
 //! time limit or a checkpoint may divide the samples into steps.
 
-use super::run::RoundTimes;
-use super::{Rounds, Warning};
+use super::run::{RoundTimes, Watch};
+use super::{Outcome, Rounds, Setup, Warning};
 use crate::analysis::z_test::normal_quantile;
 use crate::error::{InputError, Result};
 use crate::film::{FEWEST_PIXELS, SAMPLE_BLOCK};
-use crate::settings::LARGEST_SPP;
+use crate::settings::{LARGEST_SPP, Seconds, check_positive};
 
 /// Confidence with which the RMSE of a render must be below its target.
 pub const CONFIDENCE: f64 = 0.95;
@@ -44,12 +44,8 @@ pub type Between<'a> = &'a mut dyn FnMut(&Rounds, Position) -> Result<()>;
 
 impl Goal {
     pub fn check(&self, rounds: &Rounds) -> Result<()> {
-        let is_positive = |value: f64| value.is_finite() && value > 0.0;
         for (field, value) in [("target-error", self.target_error), ("time-limit", self.time_limit_s)] {
-            if let Some(value) = value.filter(|value| !is_positive(*value)) {
-                let error = InputError::new(field, value.to_string(), "is out of range");
-                return Err(error.allowed("finite numbers above 0").into());
-            }
+            value.map_or(Ok(()), |value| check_positive(field, value))?;
         }
         let spec = &rounds.setup().settings().spec;
         let pixels = spec.width as usize * spec.height as usize;
@@ -153,5 +149,18 @@ impl Goal {
             }
             look = None;
         }
+    }
+}
+
+impl Setup {
+    /// Renders until time is up, or the samples of the settings are reached.
+    pub(super) fn run_for(&self, limit: Seconds, watch: Watch<'_>) -> Result<Outcome> {
+        // The copy below shares a kernel that has been built.
+        self.build()?;
+        let mut rounds = Rounds::new(self.clone())?;
+        let spp = Some(self.settings().spp);
+        let goal = Goal { spp, target_error: None, time_limit_s: Some(limit.into()), pause_s: None };
+        goal.pursue(&mut rounds, None, &mut |rounds, spp| rounds.extend_to(spp, watch), &mut |_, _| Ok(()))?;
+        Ok(rounds.outcome())
     }
 }

@@ -40,7 +40,7 @@ mod warning;
 
 pub use crate::lab::{SERIAL, THREAD_PER_ROW};
 pub use crate::settings::{
-    ImageKey, Kind, LARGEST_BYTES, LARGEST_SEED, LARGEST_SPP, SETTINGS, ScheduleKey, Setting, Settings,
+    ImageKey, Kind, LARGEST_BYTES, LARGEST_SEED, LARGEST_SPP, SETTINGS, ScheduleKey, Seconds, Setting, Settings,
     available_threads, image_columns, parse_size, schedule_columns, schedule_name,
 };
 pub use batch::batch_runs;

@@ -32,9 +32,6 @@ settings_list!(columns {
         /// RMSE at which the render was to stop; empty if there was no such goal.
         #[since(4)]
         pub target_error: Option<f64>,
-        /// Seconds of rendering after which the render was to stop.
-        #[since(4)]
-        pub time_limit_s: Option<f64>,
         /// Rounds in which jobs were handed out.
         #[since(4)]
         pub rounds: Option<u32>,

@@ -101,6 +101,9 @@ impl Setup {
         if self.settings().adaptive {
             return self.run_adaptive(watch);
         }
+        if let Some(limit) = self.settings().time_limit_s {
+            return self.run_for(limit, watch);
+        }
         let (spec, spp) = (&self.settings().spec, self.settings().spp);
         let mut totals = RunTotals::new();
         let films = totals.round(self, self.plan.clone(), from_ref(&(0..spp)), watch)?;

@@ -72,6 +72,9 @@ macro_rules! settings_list {
             /// Whether the noise of each tile determined its number of samples; `spp` is then their mean.
             own adaptive: bool = false, Setting { nested: 7, since: 4, of_light: true, word: "/adaptive", label: "adaptive", absent: "even", ..Setting::NEW },
                 read serde(default);
+            /// Seconds of rendering after which the render was to stop: `spp` are then the samples that it reached. Empty without
+            /// a limit.
+            own time_limit_s: Option<crate::settings::Seconds> = None, Setting { name: "time-limit", nested: 27, since: 4, word: "/for-{}s", label: "for {} s", absent: "without a time limit", ..Setting::NEW };
             /// A setting that nothing uses, for tests of the list.
             own test_knob: Option<u16> = None, Setting { nested: 24, since: 10, label: "knob {}", absent: "no knob",
                 value_name: "N", about: "Knob of tests", ..Setting::NEW },

@@ -2,6 +2,7 @@
 
 mod keys;
 mod list;
+mod seconds;
 mod table;
 mod value;
 
@@ -16,6 +17,7 @@ use std::sync::LazyLock;
 
 pub use keys::{ImageKey, ScheduleKey};
 pub(crate) use list::settings_list;
+pub use seconds::Seconds;
 pub use table::{SETTINGS, Setting, image_columns, parse_size, schedule_columns};
 pub(crate) use value::Asked;
 pub use value::Kind;
@@ -95,6 +97,15 @@ pub(crate) fn check_spp(spp: u32, estimator: &str, multiple: u32) -> Result<()> 
     Ok(())
 }
 
+/// Refuses a number that is not above 0, or not finite.
+pub(crate) fn check_positive(field: &str, value: f64) -> Result<()> {
+    if value.is_finite() && value > 0.0 {
+        return Ok(());
+    }
+    let error = InputError::new(field, value.to_string(), "is out of range");
+    Err(error.allowed("finite numbers above 0").into())
+}
+
 /// Threads that this process may use at once, as of the first call: the answer takes eight system calls.
 pub fn available_threads() -> usize {
     static THREADS: LazyLock<usize> =
@@ -133,6 +144,6 @@ impl Settings {
                 .allowed(allowed)
                 .into());
         }
-        Ok(())
+        self.time_limit_s.map_or(Ok(()), |limit| check_positive("time-limit", limit.into()))
     }
 }

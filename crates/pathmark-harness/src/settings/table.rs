@@ -140,7 +140,7 @@ impl Setting {
                 table.push(Self { changes_image, kind: Kind::Size, field, column, ..self });
             }
             None => {
-                let name = column.replace('_', "-").leak();
+                let name = if self.name.is_empty() { column.replace('_', "-").leak() } else { self.name };
                 table.push(Self { name, changes_image, kind, field, column, ..self });
             }
         }

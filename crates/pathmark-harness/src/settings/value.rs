@@ -1,5 +1,6 @@
 //! The types of settings: what a user says, the column of a row that keeps it, and both as text.
 
+use super::Seconds;
 use super::table::{not_a_size, parse_size};
 use crate::error::InputError;
 use crate::kernel::Spec;
@@ -14,6 +15,7 @@ pub enum Kind {
     Switch,
     Count,
     Samples,
+    Seconds,
     Seed,
     Workers,
     Size,
@@ -89,6 +91,7 @@ asked! {
 }
 
 asked!(Option<u16>, Count, |count| count.map(|count| count.to_string()));
+asked!(Option<Seconds>, Seconds, |limit| limit.map(|limit| limit.to_string()));
 
 /// Rows keep the name that was chosen, or nothing.
 impl Asked for Option<String> {

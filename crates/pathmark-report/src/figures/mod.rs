@@ -46,6 +46,8 @@ mod time_against_spp;
 mod timelines;
 mod weak_scaling;
 
+pub(super) use equal_time::Pictures;
+
 use super::block::Block;
 use super::results::Results;
 use crate::error::{InputError, Result};

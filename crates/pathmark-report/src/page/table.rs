@@ -137,6 +137,13 @@ impl Table {
         self.columns.iter().map(move |column| column.bar(row))
     }
 
+    /// Whether a value has an interval.
+    pub(crate) fn has_intervals(&self) -> bool {
+        let has_interval =
+            |entry: &TableCell| matches!(entry, TableCell::Estimated(Some(told), _) if told.interval.is_some());
+        self.columns.iter().flat_map(|column| &column.entries).any(has_interval)
+    }
+
     /// Whether a column has no value in any row.
     pub(crate) fn is_blank(&self, column: usize) -> bool {
         let is_nothing = |entry: &TableCell| matches!(entry.shown().as_str(), "" | NONE);

@@ -107,9 +107,16 @@ const COLUMNS: usize = 4;
 impl ContactSheet {
     /// A sheet of images in rows that fit on a page.
     pub fn grid(title: String, subtitle: String, cells: Vec<Cell>, comparison: Comparison) -> Self {
-        let cells: Vec<Option<Cell>> = cells.into_iter().map(Some).collect();
-        let rows = cells.chunks(COLUMNS).map(<[Option<Cell>]>::to_vec).collect();
-        Self { title, subtitle, rows, bars: Vec::new(), comparison }
+        Self::groups(title, subtitle, vec![cells], comparison)
+    }
+
+    /// The same for groups of images, each of which begins a row.
+    pub fn groups(title: String, subtitle: String, groups: Vec<Vec<Cell>>, comparison: Comparison) -> Self {
+        let rows = groups.into_iter().flat_map(|cells| {
+            let cells: Vec<Option<Cell>> = cells.into_iter().map(Some).collect();
+            cells.chunks(COLUMNS).map(<[Option<Cell>]>::to_vec).collect::<Vec<_>>()
+        });
+        Self { title, subtitle, rows: rows.collect(), bars: Vec::new(), comparison }
     }
 
     /// The sheet as pixels, and the areas of its images.

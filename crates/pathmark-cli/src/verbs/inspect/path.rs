@@ -234,7 +234,7 @@ mod tests {
         let (told, left): (Vec<&Setting>, Vec<&Setting>) =
             SETTINGS.iter().filter(|setting| setting.changes_image).partition(|setting| is_of_sample(setting));
         let left: Vec<&str> = left.into_iter().map(|setting| setting.name).collect();
-        assert_eq!(left, ["scene", "spp", "adaptive", "clamp"]);
+        assert_eq!(left, ["scene", "spp", "adaptive", "clamp", "time-limit"]);
         for setting in told {
             let mut settings = base();
             let value = match setting.kind {

@@ -60,7 +60,7 @@ fn setup(change: impl Fn(&mut Settings)) -> Setup {
 }
 
 /// For each axis, a value that differs from the setups above.
-const OTHER_VALUES: [(&str, &str); 26] = [
+const OTHER_VALUES: [(&str, &str); 27] = [
     ("scene", "sky"),
     ("size", "9x6"),
     ("estimator", "mis"),
@@ -84,6 +84,7 @@ const OTHER_VALUES: [(&str, &str); 26] = [
     ("output", "channel-piece"),
     ("rank-rule", "guided"),
     ("ranks", "3"),
+    ("time-limit", "0.5"),
     ("test-knob", "7"),
     ("pin", "compact"),
     ("counters", "true"),

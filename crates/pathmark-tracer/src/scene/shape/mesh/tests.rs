@@ -76,6 +76,8 @@ fn a_placed_mesh_is_the_mesh_of_placed_vertices() {
     let placed = format!("v 1 2 3\nv 1 4 3\nv 2 4 11\nv -5 2 11\n{faces}");
     let placement = ", scale = 2.0, rotate = [90.0, 0.0, 90.0], translate = [1.0, 2.0, 3.0]";
     assert_eq!(mesh(&plain, placement).primitives, mesh(&placed, "").primitives);
+    // The placement is part of the scene's identity.
+    assert_ne!(mesh(&plain, placement).hash, mesh(&plain, &placement.replace("2.0,", "2.5,")).hash);
     // A placement that changes nothing changes no bit, not even the sign of a zero.
     let still = ", scale = 1.0, rotate = [0.0, -0.0, 0.0], translate = [0.0, 0.0, 0.0]";
     let signed = plain.replacen("v 0 0 0", "v -0 0 -0", 1);
