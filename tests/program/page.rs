@@ -89,9 +89,11 @@ window.addEventListener("load", () => {
   edge.value = 1;
   edge.dispatchEvent(new Event("input"));
   const pictures = () => [main, beside].map((canvas) => canvas.toDataURL());
-  // A pixel of the canvas right of the middle, which is within a pixel of the image.
-  const pixel = [main.width, main.height].map((length) => Math.floor(0.53 * length));
-  const colour = () => Array.from(main.getContext("2d").getImageData(...pixel, 1, 1).data).slice(0, 3);
+  // The middle of a pixel of the image, 24 x 16, that is neither dark nor bright.
+  const centre = (place) => [main.width * ((place % 24) + 0.5) / 24, main.height * (Math.floor(place / 24) + 0.5) / 16].map(Math.floor);
+  const colourAt = (at) => Array.from(main.getContext("2d").getImageData(...at, 1, 1).data).slice(0, 3);
+  const pixel = Array.from({ length: 24 * 16 }, (_, place) => centre(place)).find((at) => colourAt(at).every((value) => value > 30 && value < 150));
+  const colour = () => colourAt(pixel);
   const start = pictures();
   const frame = main.getBoundingClientRect();
   const [clientX, clientY] = [frame.x + ((pixel[0] + 0.5) / main.width) * frame.width, frame.y + ((pixel[1] + 0.5) / main.height) * frame.height];
