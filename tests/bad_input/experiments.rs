@@ -178,9 +178,17 @@ fn each_wrong_reference_is_refused_at_its_place() {
 /// refused.
 #[test]
 fn names_that_lead_elsewhere_are_refused() {
-    for name in
-        ["...toml", "..toml", "bursts.toml", "earlier.toml", "guards.toml", "references.toml", "report.html.toml"]
-    {
+    for name in [
+        "...toml",
+        "..toml",
+        "bursts.toml",
+        "earlier.toml",
+        "guards.toml",
+        "index.toml",
+        "pages.toml",
+        "references.toml",
+        "report.html.toml",
+    ] {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join(name), TINY).unwrap();
         refused(folder.path(), &["run", name, "--out", "results/out"], 2, &["experiment", name, "another file name"]);

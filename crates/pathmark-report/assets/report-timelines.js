@@ -15,6 +15,9 @@
   // Milliseconds in which the longest schedule is replayed.
   const PLAY_MS = 8000;
 
+  // A colour of figures, which are dark on a dark page.
+  const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
   const told = (microseconds) => (microseconds >= 1e3
     ? `${(microseconds / 1e3).toPrecision(4)} ms`
     : `${microseconds.toPrecision(4)} µs`);
@@ -66,13 +69,13 @@
       canvas.style.height = `${height}px`;
       const context = canvas.getContext("2d");
       context.scale(sharp, sharp);
-      context.fillStyle = "#ffffff";
+      context.fillStyle = colour("--f-paper");
       context.fillRect(0, 0, width, height);
       context.font = "12px system-ui, sans-serif";
       context.textBaseline = "middle";
       let top = 0;
       schedules.forEach((schedule, place) => {
-        context.fillStyle = "#1b1b1b";
+        context.fillStyle = colour("--f-ink");
         context.fillText(schedule.title, LEFT, top + TITLE / 2);
         const lane = lanes[place];
         const rim = lane >= 8 ? 1 : 0;
@@ -90,12 +93,12 @@
           context.fillRect(left, top + TITLE + lane * worker + rim, Math.max(right - left - 0.5, 0.5), lane - 2 * rim);
         });
         context.restore();
-        context.strokeStyle = "#5a5a5a";
+        context.strokeStyle = colour("--f-muted");
         const right = Math.min(Math.max(x(schedule.end, width), LEFT), width - 4);
         context.strokeRect(LEFT, top + TITLE, right - LEFT, lane * schedule.workers);
         top += heights[place];
       });
-      context.fillStyle = "#1b1b1b";
+      context.fillStyle = colour("--f-ink");
       const step = stepOf(shown.to - shown.from);
       for (let tick = Math.ceil(shown.from / step) * step; tick <= shown.to; tick += step) {
         context.fillText(told(tick), Math.min(x(tick, width), width - 60), top + AXIS / 2);
@@ -159,7 +162,7 @@
         slider.setAttribute("aria-valuetext", told(now));
         drawn.forEach(({ schedule, caption, picture, scale }) => {
           const context = picture.getContext("2d");
-          context.fillStyle = "#ffffff";
+          context.fillStyle = colour("--f-paper");
           context.fillRect(0, 0, picture.width, picture.height);
           let done = 0;
           schedule.jobs.forEach(([, worker, start, stop, [x0, y0, x1, y1]]) => {

@@ -2,6 +2,7 @@
 // The page is complete without this script: it adds values under the pointer, lines that can be switched off, downloads and sorting.
 
 // For this script and those behind it.
+const all = (selector, within = document) => Array.from(within.querySelectorAll(selector));
 const save = (blob, name) => {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);
@@ -19,8 +20,6 @@ const addButton = (within, label, act) => {
 };
 
 (() => {
-  const all = (selector, within = document) => Array.from(within.querySelectorAll(selector));
-
   // Narrow screens begin with a closed table of contents.
   if (window.matchMedia("(max-width: 79.99rem)").matches) {
     all("nav details").forEach((contents) => { contents.open = false; });
@@ -32,6 +31,22 @@ const addButton = (within, label, act) => {
   value.hidden = true;
   value.setAttribute("role", "status");
   document.body.append(value);
+  // The values of figures stand on the page in a short form. A figure on other axes has the places of its values alone.
+  all("figure").forEach((figure) => {
+    const [first, other] = all("svg", figure).map((svg) => all("circle.note", svg));
+    [...(first || []), ...(other || [])].filter((note) => note.dataset.note !== undefined).forEach((note) => {
+      const [value, low, high, count, ...of] = note.dataset.note.split("|");
+      Object.assign(note.dataset, { series: note.parentElement.dataset.series, value, low, high, count, of: of.join("|") });
+      // The browser's own tooltip comes late and not at all for a finger.
+      const title = note.querySelector("title");
+      note.setAttribute("aria-label", title.textContent);
+      title.remove();
+    });
+    (other || []).filter((note) => note.dataset.note === undefined).forEach((note, place) => {
+      Object.assign(note.dataset, first[place].dataset);
+      note.setAttribute("aria-label", first[place].getAttribute("aria-label"));
+    });
+  });
   const addLine = (text) => {
     const line = document.createElement("div");
     line.textContent = text;
@@ -78,12 +93,6 @@ const addButton = (within, label, act) => {
       showNote(notes[place], box.left + box.width / 2, box.top);
     });
     svg.addEventListener("blur", () => { value.hidden = true; });
-  });
-  all("circle.note").forEach((note) => {
-    // The browser's own tooltip comes late and not at all for a finger.
-    const title = note.querySelector("title");
-    note.setAttribute("aria-label", title.textContent);
-    title.remove();
   });
   document.addEventListener("pointermove", show);
   document.addEventListener("click", show);
@@ -194,41 +203,4 @@ const addButton = (within, label, act) => {
       });
     });
   });
-
-  // The claims, by report and by verdict. A filter opens the tables that it leaves rows in.
-  const claims = document.getElementById("claims");
-  const tables = claims ? all("details", claims).filter((table) => table.querySelector("td[data-verdict]")) : [];
-  if (tables.length > 0) {
-    const nameOf = (table) => table.querySelector("summary").textContent.split(":")[0];
-    const verdictOf = (row) => row.querySelector("td[data-verdict]").dataset.verdict;
-    const rowsOf = (table) => Array.from(table.querySelector("tbody").rows);
-    const chooser = (name, choices) => {
-      const label = document.createElement("label");
-      const choice = document.createElement("select");
-      ["all", ...new Set(choices)].forEach((of) => choice.append(new Option(of, of)));
-      choice.addEventListener("change", () => filter());
-      label.append(`${name}: `, choice);
-      return [label, (of) => choice.value === "all" || choice.value === of, () => choice.value !== "all"];
-    };
-    const [byReport, isReport, reportIsChosen] = chooser("Report", tables.map(nameOf));
-    const [byVerdict, isVerdict, verdictIsChosen] = chooser("Verdict", tables.flatMap(rowsOf).map(verdictOf).sort());
-    const shown = document.createElement("output");
-    const filter = () => {
-      tables.forEach((table) => {
-        const rows = rowsOf(table);
-        rows.forEach((row) => { row.hidden = !isVerdict(verdictOf(row)); });
-        const left = rows.filter((row) => !row.hidden).length;
-        table.hidden = !isReport(nameOf(table)) || left === 0;
-        table.previousElementSibling.hidden = table.hidden;
-        if (reportIsChosen() || verdictIsChosen()) table.open = true;
-      });
-      const rows = tables.flatMap(rowsOf);
-      shown.textContent = `${rows.filter((row) => !row.hidden && !row.closest("details").hidden).length} of ${rows.length} claims`;
-    };
-    const filters = document.createElement("p");
-    filters.className = "filters";
-    filters.append(byReport, byVerdict, shown);
-    claims.querySelector("h2").after(filters);
-    filter();
-  }
 })();

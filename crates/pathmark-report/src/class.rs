@@ -2,7 +2,7 @@
 //! folder of results. Machines differ, so the class is compared by speedups.
 
 use crate::error::{Error, InputError};
-use crate::experiment::{Chapter, MACHINE, read_run_file};
+use crate::experiment::{Chapter, MACHINE, has_records, read_run_file};
 use crate::page::Section;
 use crate::prelude::*;
 use crate::schedule::crew;
@@ -23,12 +23,12 @@ pub(crate) struct Member {
 /// The experiments of a page, sorted by their folders: those of the folder itself, or those of a class. A folder is a class
 /// if none in it has the name of its experiment, and there is more than one, or one with experiments in it.
 pub(crate) fn members(out: &Path) -> Result<Vec<Member>> {
-    let (with_rows, others): (Vec<PathBuf>, Vec<PathBuf>) = folders(out)?.into_iter().partition(|path| has_rows(path));
+    let (with_rows, others): (Vec<PathBuf>, Vec<PathBuf>) = folders(out)?.into_iter().partition(|path| has_records(path));
     let mut found = with_rows.into_iter().map(member).collect::<Result<Vec<Member>>>()?;
     // A folder of results may have others in it, such as those of earlier versions.
     if found.iter().all(|member| member.student.is_some()) {
         for student in others.into_iter().filter(|folder| !OTHER_BUILDS.contains(&name_of(folder).as_str())) {
-            let own = folders(&student)?.into_iter().filter(|path| has_rows(path));
+            let own = folders(&student)?.into_iter().filter(|path| has_records(path));
             found.extend(own.map(|folder| Member { folder, student: Some(name_of(&student)) }));
         }
     }
@@ -42,10 +42,6 @@ pub(crate) fn members(out: &Path) -> Result<Vec<Member>> {
 
 fn name_of(folder: &Path) -> String {
     folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
-}
-
-fn has_rows(folder: &Path) -> bool {
-    has_records(folder)
 }
 
 /// A folder that does not have the name of the experiment that was run has that of a student.

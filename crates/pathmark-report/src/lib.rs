@@ -40,7 +40,7 @@ pub use words::counted;
 
 use crate::error::{Error, InputError, Result};
 use crate::experiment::{MACHINE, records_path};
-use crate::files::Files;
+use crate::files::{Files, create_folder};
 use crate::lab::Lab;
 use class::{Class, Member, members};
 use page::{Section, benches, block, doctor, guards, table};
@@ -56,6 +56,9 @@ use std::sync::Arc;
 /// The page's name in a folder of results.
 const PAGE: &str = "report.html";
 
+/// The folder of pages of one section each.
+const PAGES: &str = "pages";
+
 /// Enters the page of a folder into the files of a command that will write it. `option` is the option that named the
 /// folder. Refuses a folder that has another file of that name.
 pub fn claim(option: &str, out: &Path, files: &mut Files) -> Result<()> {
@@ -65,6 +68,41 @@ pub fn claim(option: &str, out: &Path, files: &mut Files) -> Result<()> {
 /// Draws the figures of every experiment in a folder, or in the folders of a class, and writes `report.html` there; returns
 /// the page's path. The page shows the verdicts on claims; only the verb `claims` writes them into files.
 pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
+    write_page(&sections(lab, out)?, out)
+}
+
+/// Like [`write`], but also writes a page for each experiment, and a list of them, into the folder `pages`; returns the
+/// list's path. `option` is the option that asked for them. Refuses to replace other files.
+pub fn write_pages(option: &str, lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
+    let mut sections = sections(lab, out)?;
+    let folder = out.join(PAGES);
+    let index = folder.join(page::INDEX);
+    let path = |section: &Section| folder.join(format!("{}.html", section.name));
+    let mut files = Files::default();
+    for path in sections.iter().map(path).chain([index.clone()]) {
+        files.renews(option, &path, page::is_page)?;
+    }
+    write_page(&sections, out)?;
+    create_folder(option, &folder)?;
+    // Paths are as seen from the page.
+    sections.iter_mut().flat_map(|section| &mut section.files).for_each(|file| *file = format!("../{file}"));
+    for section in &sections {
+        let html = page::html_of_one(section)?;
+        atomic_file::write(&path(section), |file| file.write_all(html.as_bytes()))?;
+    }
+    atomic_file::write(&index, |file| file.write_all(page::index(&sections).as_bytes()))?;
+    Ok(index)
+}
+
+fn write_page(sections: &[Section], out: &Path) -> Result<PathBuf> {
+    let page = out.join(PAGE);
+    let html = page::html(sections)?;
+    atomic_file::write(&page, |file| file.write_all(html.as_bytes()))?;
+    Ok(page)
+}
+
+/// The sections of a folder, whose figures are drawn.
+fn sections(lab: &Arc<Lab>, out: &Path) -> Result<Vec<Section>> {
     let (mut sections, mut class) = (Vec::new(), Class::default());
     let mut add = |folder: &Path, section: Section| {
         section.blocks.iter().try_for_each(|block| block.save(&folder.join("figures")))?;
@@ -99,10 +137,7 @@ pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
         let problem = "holds no experiment: no folder in it has a records.csv";
         return Err(InputError::new("folder", out.display().to_string(), problem).into());
     }
-    let page = out.join(PAGE);
-    let html = page::html(&sections)?;
-    atomic_file::write(&page, |file| file.write_all(html.as_bytes()))?;
-    Ok(page)
+    Ok(sections)
 }
 
 /// Writes `crops.png` beside the figures of each experiment of a folder that draws the figure `equal-time`; returns the

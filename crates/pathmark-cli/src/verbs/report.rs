@@ -12,13 +12,16 @@ pub(crate) struct Arguments {
     /// row of its top left pixel, and its width, as in 20,10,32. May be given several times
     #[arg(long, value_name = "X,Y,SIZE", allow_hyphen_values = true)]
     crops: Vec<String>,
+    /// Also write a page for each experiment, and a list of them, into the folder `pages`
+    #[arg(long)]
+    pages: bool,
     /// Also write a new LaTeX file: figures, a table with intervals, machine, method and references
     #[arg(long, value_name = "FILE.tex")]
     paper: Option<PathBuf>,
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
-    let Arguments { folder, crops, paper } = arguments;
+    let Arguments { folder, crops, pages, paper } = arguments;
     let crops = crops.iter().map(|crop| Crop::parse(crop)).collect::<Result<Vec<Crop>>>()?;
     let mut files = Files::default();
     report::claim("folder", folder, &mut files)?;
@@ -31,7 +34,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
         }
     }
     let mut written = if crops.is_empty() { Vec::new() } else { report::write_crops(lab, folder, &crops)? };
-    written.insert(0, report::write(lab, folder)?);
+    let page = if *pages { report::write_pages("pages", lab, folder)? } else { report::write(lab, folder)? };
+    written.insert(0, page);
     if let Some(paper) = paper {
         report::write_paper(lab, folder, paper)?;
         written.push(paper.clone());

@@ -42,8 +42,19 @@ use std::sync::Arc;
 pub(super) const REFERENCE_SPP: &str = "reference-spp";
 
 /// Other names in a folder of results, which no experiment may have.
-const TAKEN: &[&str] =
-    &["CLAIMS.md", "benches", "bursts", "check", "claims", "earlier", "guards", "references", "report.html"];
+const TAKEN: &[&str] = &[
+    "CLAIMS.md",
+    "benches",
+    "bursts",
+    "check",
+    "claims",
+    "earlier",
+    "guards",
+    "index",
+    "pages",
+    "references",
+    "report.html",
+];
 
 /// The features that not every build has, and whether this one has them. An experiment may require them.
 pub(super) const FEATURES: [(&str, bool); 3] = [

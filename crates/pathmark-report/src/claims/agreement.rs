@@ -75,9 +75,9 @@ impl Agreement {
         let reports = Some(earlier.join(REPORTS)).filter(|folder| folder.is_dir());
         let earlier_folders: Vec<PathBuf> = std::iter::once(earlier.to_path_buf()).chain(reports).collect();
         let (own, theirs) = (Images::read(folders)?, Images::read(&earlier_folders)?);
-        let claims = Report::all()?;
+        let claims = Report::all(lab)?;
         let ledger = earlier.join(FINDINGS);
-        let ledger = if ledger.is_file() { vec![Report::read(&ledger)?] } else { Vec::new() };
+        let ledger = if ledger.is_file() { Report::read(&ledger)? } else { Vec::new() };
         let (findings, same_side) = of_findings(&twice(lab, &ledger, [folders, &earlier_folders])?);
         Ok(Self {
             rows: own.rows,
@@ -138,7 +138,7 @@ impl Images {
         for out in folders {
             for folder in experiment_folders(out)? {
                 all.experiments += 1;
-                for row in read_records(&folder.join("records.csv"))?.into_iter().filter(|row| row.error.is_empty()) {
+                for row in read_records(&records_path(&folder))?.into_iter().filter(|row| row.error.is_empty()) {
                     all.rows += 1;
                     // Samplers that draw other random numbers in each run have none.
                     if !row.checksum.is_empty() {

@@ -298,6 +298,6 @@ mod tests {
         let figure = svg(&blocks, "rmse-against-time");
         assert!(figure.contains("Half the error costs 4.0 times the seconds: cornell"));
         // Both scenes have a panel, and the points of one line tell their samples.
-        assert!(figure.contains("sky, 8x6") && figure.contains("\n16\n") && figure.contains("\n64\n"));
+        assert!(figure.contains("sky, 8x6") && figure.contains(">16</text>") && figure.contains(">64</text>"));
     }
 }

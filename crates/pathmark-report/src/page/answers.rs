@@ -97,7 +97,7 @@ fn figure(answer: &Answer<'_>, styles: &mut Styles) -> Result<Option<String>> {
         _ => None,
     });
     let Some(own) = own else { return Ok(None) };
-    Ok(Some(styles.thumbnail(&own.svg()?)))
+    Ok(Some(styles.figure(&own.drawing(), "")?))
 }
 
 /// Whether a section is among the answers of a page.
@@ -116,7 +116,7 @@ pub(super) fn markup(sections: &[Section], styles: &mut Styles) -> Result<Markup
                         h2 { (answer.heading) " " span class={ "badge " (answer.trust.class()) } { (answer.trust.badge()) } }
                         p { (prose(answer.text)) " " a href={ "#" (answer.section.name) } { "More" } }
                         @if let Some(figure) = figure {
-                            a.thumbnail href={ "#" (answer.section.name) "-" (answer.stem) } aria-label={ "The figure of: " (answer.heading) } { (PreEscaped(figure)) }
+                            a.thumbnail.disturbed[answer.trust == Trust::Disturbed] href={ "#" (answer.section.name) "-" (answer.stem) } aria-label={ "The figure of: " (answer.heading) } { (PreEscaped(figure)) }
                         }
                     }
                 }

@@ -1,12 +1,23 @@
 //! Figures as a part of the page. Their attributes of style take half of an SVG's text and are few: each combination becomes
 //! a class of the page. The greys become variables, so that figures are dark on a dark page.
 
+use crate::error::Result;
+use crate::plot::{Drawing, svg};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// The attributes that become classes.
-const ATTRIBUTES: [&str; 7] =
-    ["fill", "stroke", "stroke-width", "font-family", "font-size", "text-anchor", "pointer-events"];
+const ATTRIBUTES: [&str; 9] = [
+    "fill",
+    "opacity",
+    "stroke",
+    "stroke-width",
+    "stroke-dasharray",
+    "shape-rendering",
+    "font-family",
+    "font-size",
+    "text-anchor",
+];
 
 /// The greys of figures with the variables of the page; see `plot::style`.
 const GREYS: [(&str, &str); 6] = [
@@ -25,8 +36,14 @@ pub(super) struct Styles {
 }
 
 impl Styles {
+    /// A drawing with classes instead of attributes of style, and with `notes` as its last elements.
+    pub(super) fn figure(&mut self, drawing: &Drawing, notes: &str) -> Result<String> {
+        let text = self.compact(&svg::document(drawing, "")?);
+        Ok(format!("{}{notes}</svg>", text.strip_suffix("</svg>").unwrap_or(&text)))
+    }
+
     /// The SVG with classes instead of attributes of style.
-    pub(super) fn compact(&mut self, svg: &str) -> String {
+    fn compact(&mut self, svg: &str) -> String {
         let mut text = String::with_capacity(svg.len());
         let mut parts = svg.split('<');
         text += parts.next().unwrap_or_default();
@@ -35,14 +52,6 @@ impl Styles {
             let _ = write!(text, "<{}>{}", self.tag(tag), rest.trim_matches('\n'));
         }
         text
-    }
-
-    /// The compact SVG without the values under the pointer.
-    pub(super) fn thumbnail(&mut self, svg: &str) -> String {
-        let mut parts = svg.split("<circle class=\"note\"");
-        let first = parts.next().unwrap_or_default().to_string();
-        let rest = parts.map(|part| part.split_once("</circle>").map_or("", |(_, rest)| rest));
-        self.compact(&(first + &rest.collect::<String>()))
     }
 
     /// A tag with a class for its style.
@@ -85,6 +94,7 @@ impl Styles {
         let mut text = String::from(
             ":root{--f-ink:#222222;--f-muted:#595959;--f-grid:#e1e1e1;--f-faint:#f1f1f1;--f-paper:#ffffff}",
         );
+        let _ = write!(text, ".note{{r:{}px;fill:none;pointer-events:all}}", svg::REACH);
         for (style, number) in &self.classes {
             let _ = write!(text, ".k{number}{{{}}}", style.trim_end_matches(';'));
         }
@@ -129,17 +139,18 @@ mod tests {
     }
 
     #[test]
-    fn marks_keep_their_class_and_thumbnails_lose_them() {
+    fn parts_keep_their_class_and_notes_come_last() {
         let mut styles = Styles::default();
-        let note = "<circle class=\"note\" cx=\"1\" fill=\"none\" data-of=\"x\"><title>v</title></circle>";
-        let svg = format!("<svg width=\"1\"><g class=\"series\" data-series=\"a\"></g>{note}\n</svg>");
-        let compact = styles.compact(&svg);
-        assert!(
-            compact.contains("<circle cx=\"1\" data-of=\"x\" class=\"note k0\"><title>v</title></circle>"),
-            "{compact}"
-        );
-        assert!(compact.contains("<g data-series=\"a\" class=\"series\"></g>"), "{compact}");
-        assert_eq!(styles.thumbnail(&svg), "<svg width=\"1\"><g data-series=\"a\" class=\"series\"></g></svg>");
+        let part =
+            "<svg width=\"1\"><g class=\"series\" data-series=\"a\">\n<path fill=\"none\" d=\"M1 2h3\"/>\n</g>\n</svg>";
+        let compact = styles.compact(part);
+        let expected =
+            "<svg width=\"1\"><g data-series=\"a\" class=\"series\"><path d=\"M1 2h3\" class=\"k0\"/></g></svg>";
+        assert_eq!(compact, expected);
+        let mut drawing = Drawing::new("t", 9.0, 9.0);
+        drawing.path(vec![(1.0, 2.0), (3.0, 2.0)], [1; 3], 1.0);
+        let figure = styles.figure(&drawing, "<g>notes</g>").unwrap();
+        assert!(figure.ends_with("/><g>notes</g></svg>") && figure.contains("d=\"M2 4h4\""), "{figure}");
     }
 
     #[test]

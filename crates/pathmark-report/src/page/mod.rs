@@ -8,18 +8,22 @@ pub(crate) mod bursts;
 mod compact;
 pub(crate) mod doctor;
 pub(crate) mod guards;
+mod index;
+mod notes;
 mod photo;
 pub(crate) mod table;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::experiment::{Chapter, Definition, RunFile};
 use crate::measure::{LeftOut, Record, TimingConcerns};
+use crate::plot::Figure;
 use crate::prelude::joined;
 use crate::results::Results;
 use crate::words::counted;
 use again::Again;
 use block::Block;
 use compact::Styles;
+pub(crate) use index::{INDEX, index};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde::Serialize;
 use std::collections::{BTreeSet, HashMap};
@@ -29,8 +33,9 @@ use std::path::Path;
 use table::Table;
 
 const STYLE: &str = include_str!("../../assets/report.css");
-const SCRIPTS: [&str; 3] = [
+const SCRIPTS: [&str; 4] = [
     include_str!("../../assets/report.js"),
+    include_str!("../../assets/report-links.js"),
     include_str!("../../assets/report-pictures.js"),
     include_str!("../../assets/report-timelines.js"),
 ];
@@ -89,6 +94,15 @@ impl Section {
         self.doubts.is_any() && 2 * self.doubts.count() >= self.rows
     }
 
+    /// Its result: its answer, or else the finding for the beginning of the page, or its first one.
+    fn headline(&self) -> Option<&str> {
+        let answer = self.blocks.iter().find_map(|block| match block {
+            Block::Answer { text, .. } => Some(text.as_str()),
+            _ => None,
+        });
+        answer.or(self.in_short.as_deref()).or_else(|| self.blocks.iter().find_map(Block::as_finding))
+    }
+
     pub(crate) fn of(results: Results, blocks: Vec<Block>) -> Self {
         let rows = results.len();
         let doubts = results.doubts();
@@ -105,12 +119,21 @@ impl Section {
 /// Longer cells are prose and may be broken into lines.
 const LONGEST_CELL: usize = 56;
 
+/// The page of all sections.
 pub(crate) fn html(sections: &[Section]) -> Result<String> {
+    report(sections, &Markup::default())
+}
+
+/// The page of one section, beside a list of all.
+pub(crate) fn html_of_one(section: &Section) -> Result<String> {
+    report(std::slice::from_ref(section), &html! { p { a href=(INDEX) { "All experiments" } } })
+}
+
+/// The page of sections, with `above` the table of contents.
+fn report(sections: &[Section], above: &Markup) -> Result<String> {
     let mut styles = Styles::default();
     let claims: Vec<&Section> = sections.iter().filter(|section| section.chapter.is_none()).collect();
-    let chapters: Vec<(Chapter, Vec<&Section>)> =
-        Chapter::ALL.into_iter().map(|chapter| (chapter, of_chapter(sections, chapter))).collect();
-    let chapters: Vec<_> = chapters.into_iter().filter(|(_, sections)| !sections.is_empty()).collect();
+    let chapters = chapters(sections);
     let answers = answers::markup(sections, &mut styles)?;
     let mut parts = Vec::new();
     for (chapter, sections) in &chapters {
@@ -120,6 +143,21 @@ pub(crate) fn html(sections: &[Section]) -> Result<String> {
         parts.push(section(claims, true, &mut styles)?);
     }
     let title = title(sections);
+    let nav = html! { (above) (contents(sections, &chapters)) };
+    let main = html! {
+        h1 { (title) }
+        (about(sections))
+        (banner(sections))
+        (answers)
+        (in_short(sections, &chapters))
+        @for part in &parts { (part) }
+        (sources(sections))
+    };
+    Ok(document(title, &styles, &nav, &main))
+}
+
+/// A whole page.
+fn document(title: &str, styles: &Styles, nav: &Markup, main: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -132,21 +170,19 @@ pub(crate) fn html(sections: &[Section]) -> Result<String> {
                 style { (PreEscaped(STYLE)) }
             }
             body {
-                nav aria-label="Contents" { (contents(sections, &chapters)) }
-                main {
-                    h1 { (title) }
-                    (about(sections))
-                    (banner(sections))
-                    (answers)
-                    (in_short(sections, &chapters))
-                    @for part in &parts { (part) }
-                    (sources(sections))
-                }
+                nav aria-label="Contents" { (nav) }
+                main { (main) }
                 @for script in SCRIPTS { script { (PreEscaped(script)) } }
             }
         }
     };
-    Ok(page.into_string())
+    page.into_string()
+}
+
+/// The chapters that have sections, with these in their order.
+fn chapters(sections: &[Section]) -> Vec<(Chapter, Vec<&Section>)> {
+    let all = Chapter::ALL.into_iter().map(|chapter| (chapter, of_chapter(sections, chapter)));
+    all.filter(|(_, sections)| !sections.is_empty()).collect()
 }
 
 /// The title of a page: that of its experiment, if it is the only one.
@@ -303,10 +339,10 @@ fn sources(sections: &[Section]) -> Markup {
 fn section(section: &Section, is_chapter: bool, styles: &mut Styles) -> Result<Markup> {
     let first_table = section.blocks.iter().position(|block| matches!(block, Block::Table { .. }));
     let blocks = section.blocks.iter().enumerate();
-    let parts = blocks.map(|(at, block)| part(&section.name, block, first_table == Some(at), styles));
+    let parts = blocks.map(|(at, block)| part(section, block, first_table == Some(at), styles));
     let parts = parts.collect::<Result<Vec<Markup>>>()?;
     Ok(html! {
-        section.disturbed[section.is_disturbed()] id=(section.name) data-again=[section.again.as_ref().map(json)] {
+        section id=(section.name) data-again=[section.again.as_ref().map(json)] {
             @if is_chapter { h2 { (section.title) } } @else { h3 { (section.title) } }
             p { strong { "Question. " } (prose(&section.question)) }
             @if !section.failed.is_empty() {
@@ -347,33 +383,49 @@ fn failures(failed: &[Record]) -> Vec<(&str, Vec<&str>)> {
     errors
 }
 
-fn part(section: &str, block: &Block, is_first_table: bool, styles: &mut Styles) -> Result<Markup> {
+fn part(section: &Section, block: &Block, is_first_table: bool, styles: &mut Styles) -> Result<Markup> {
     Ok(match block {
         Block::Answer { .. } => Markup::default(),
         Block::Finding(text) => html! { p.finding { (prose(text)) } },
         Block::Notice(text) => html! { p.notice { (prose(text)) } },
-        Block::Figure { stem, figure } => html! {
-            figure id={ (section) "-" (stem) } {
-                (PreEscaped(styles.compact(&figure.svg()?)))
-                @if let Some((name, svg)) = figure.other_svg()? { div.other hidden data-name=(name) { (PreEscaped(styles.compact(&svg))) } }
-                @if let Some(data) = figure.data() { script.jobs type="application/json" { (PreEscaped(in_script(&data))) } }
-                (numbered(section, stem))
-            }
-        },
+        Block::Figure { stem, figure } => figure_markup(section, stem, figure.as_ref(), styles)?,
         Block::Picture { stem, title, png, comparison, images } => html! {
-            figure.sheet id={ (section) "-" (stem) } {
+            figure.sheet id={ (section.name) "-" (stem) } {
                 img alt=(title) src=(photo::source(png)?);
                 script.images type="application/json" { (PreEscaped(in_script(&json(&(comparison, images))))) }
-                (numbered(section, stem))
+                figcaption { (number(section, stem)) }
             }
         },
         Block::Table { table, .. } => table_markup(table, is_first_table),
     })
 }
 
+/// A figure, which is grey if times that it may show are in doubt.
+fn figure_markup(section: &Section, stem: &str, figure: &dyn Figure, styles: &mut Styles) -> Result<Markup> {
+    let drawing = figure.drawing();
+    let svg = styles.figure(&drawing, &notes::of(&drawing.notes))?;
+    let other = figure.other_axes().map(|(name, other)| {
+        let svg = styles.figure(&other, &notes::again(&other.notes, &drawing.notes))?;
+        Ok::<_, Error>((name, svg))
+    });
+    let other = other.transpose()?;
+    let is_disturbed = section.is_disturbed();
+    Ok(html! {
+        figure class=[is_disturbed.then_some("disturbed")] id={ (section.name) "-" (stem) } {
+            (PreEscaped(svg))
+            @if let Some((name, svg)) = other { div.other hidden data-name=(name) { (PreEscaped(svg)) } }
+            @if let Some(data) = figure.data() { script.jobs type="application/json" { (PreEscaped(in_script(&data))) } }
+            figcaption {
+                (number(section, stem))
+                @if is_disturbed { " Grey, because the times of " (section.doubts.count()) " of " (section.rows) " rows are in doubt." }
+            }
+        }
+    })
+}
+
 /// The number of a figure, which the style sheet counts, and a link to it.
-fn numbered(section: &str, stem: &str) -> Markup {
-    html! { figcaption { a href={ "#" (section) "-" (stem) } {} } }
+fn number(section: &Section, stem: &str) -> Markup {
+    html! { a href={ "#" (section.name) "-" (stem) } {} }
 }
 
 /// Data for the page's script.
@@ -395,19 +447,22 @@ fn table_markup(table: &Table, is_first: bool) -> Markup {
     }
     let columns: Vec<(usize, &str)> =
         table.heads().enumerate().filter(|(column, _)| !table.is_blank(*column)).collect();
+    let text = |at: usize| is_text[at].then_some("text");
     html! {
         details.wide open[is_first && table.len() <= OPEN_ROWS] {
             summary { (table.title) }
             table {
-                thead { tr { @for (at, head) in &columns { th.text[is_text[*at]] { (head) } } } }
+                thead { tr { @for (at, head) in &columns { th class=[text(*at)] { (head) } } } }
                 tbody {
                     @for (number, row) in table.rows().enumerate() {
                         @let bars: Vec<Option<[f64; 2]>> = table.bars(number).collect();
-                        tr {
+                        @let claim = claim(&columns, &row);
+                        tr id=[claim.map(|(id, _)| format!("claim-{id}"))] {
                             @for (at, head) in &columns {
-                                @let (cell, is_text) = (&row[*at], is_text[*at]);
-                                td.text[is_text] data-verdict=[(*head == "verdict").then_some(cell)] {
-                                    (broken(cell, is_text))
+                                @let cell = &row[*at];
+                                td class=[text(*at)] data-verdict=[(*head == "verdict").then_some(cell)] {
+                                    @if let Some((id, words)) = claim.filter(|_| *head == CLAIM) { a href={ "#claim-" (id) } { (id) } ". " (words) }
+                                    @else { (broken(cell, is_text[*at])) }
                                     @if let Some([low, high]) = bars[*at] { i style={ "--a:" (format!("{low:.2}")) ";--b:" (format!("{high:.2}")) } {} }
                                 }
                             }
@@ -419,9 +474,20 @@ fn table_markup(table: &Table, is_first: bool) -> Markup {
     }
 }
 
+/// The column of claims in a table of verdicts.
+const CLAIM: &str = "claim";
+
+/// The number of the claim in a row of verdicts, and its words.
+fn claim<'a>(columns: &[(usize, &str)], row: &'a [String]) -> Option<(&'a str, &'a str)> {
+    let column = |name: &str| columns.iter().find(|(_, head)| *head == name).map(|(at, _)| *at);
+    column("verdict")?;
+    row[column(CLAIM)?].split_once(". ").filter(|(id, _)| id.bytes().all(|byte| byte.is_ascii_digit()))
+}
+
 /// The text of a cell. Lines break only between a number, its interval and its confidence, also in a narrow column.
 fn broken(cell: &str, is_text: bool) -> Markup {
-    if is_text || !cell.starts_with(|first: char| first.is_ascii_digit() || first == '-') {
+    let is_number = cell.starts_with(|first: char| first.is_ascii_digit() || first == '-');
+    if is_text || !is_number || !cell.contains(' ') {
         return html! { (cell) };
     }
     let parts = cell.split_inclusive(", ").flat_map(|part| match part.find(" (") {

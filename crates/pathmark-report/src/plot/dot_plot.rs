@@ -183,7 +183,7 @@ impl Figure for DotPlot {
             }
             for (index, (value, _)) in self.guides.iter().enumerate() {
                 if let Some(x) = range.place(*value).map(|place| left + place * (right - left)) {
-                    drawing.dashed(&[(x, top), (x, bottom)], MUTED, GUIDE, DASHES[1 + index % 2]);
+                    drawing.dashed(vec![(x, top), (x, bottom)], MUTED, GUIDE, DASHES[1 + index % 2]);
                 }
             }
             for ((row, name), &middle) in self.rows.iter().zip(&names).zip(&middles) {

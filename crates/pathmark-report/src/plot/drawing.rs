@@ -30,8 +30,8 @@ pub struct Text {
 /// One element to paint.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Mark {
-    /// A line through points.
-    Path { places: Vec<Place>, colour: Colour, width: f64 },
+    /// A line through points, at least two.
+    Path { places: Vec<Place>, colour: Colour, width: f64, dash: Dash },
     /// A filled polygon; its opacity goes from 0, invisible, to 1.
     Area { places: Vec<Place>, colour: Colour, opacity: f64 },
     /// A filled rectangle, by its left, top, right and bottom. Neighbours that share a side neither overlap nor leave a
@@ -108,14 +108,13 @@ impl Drawing {
 
     /// Adds a line; nothing for fewer than two points.
     pub fn path(&mut self, places: Vec<Place>, colour: Colour, width: f64) {
-        if places.len() > 1 {
-            self.marks.push(Mark::Path { places, colour, width });
-        }
+        self.dashed(places, colour, width, &[]);
     }
 
-    pub fn dashed(&mut self, places: &[Place], colour: Colour, width: f64, dash: Dash) {
-        for stroke in strokes(places, dash) {
-            self.path(stroke, colour, width);
+    /// Adds a line in dashes; nothing for fewer than two points.
+    pub fn dashed(&mut self, places: Vec<Place>, colour: Colour, width: f64, dash: Dash) {
+        if places.len() > 1 {
+            self.marks.push(Mark::Path { places, colour, width, dash });
         }
     }
 
@@ -162,7 +161,7 @@ impl Drawing {
 }
 
 /// Cuts a line into the strokes of a dash pattern.
-fn strokes(places: &[Place], dash: Dash) -> Vec<Vec<Place>> {
+pub(super) fn strokes(places: &[Place], dash: Dash) -> Vec<Vec<Place>> {
     let Some((&first, rest)) = places.split_first() else { return Vec::new() };
     if dash.is_empty() {
         return vec![places.to_vec()];

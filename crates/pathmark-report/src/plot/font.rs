@@ -5,28 +5,17 @@
 use std::sync::OnceLock;
 
 use ab_glyph::{Font, FontRef, GlyphId};
-use plotters::style::{FontDesc, FontFamily, FontStyle, register_font};
 
 use crate::error::{Error, Result};
 
 /// The font family in an SVG. A viewer without `DejaVu` takes its own sans-serif, which is narrower.
-const FAMILY: &str = "DejaVu Sans, sans-serif";
+pub(super) const FAMILY: &str = "DejaVu Sans, sans-serif";
 static BYTES: &[u8] = include_bytes!("../../assets/DejaVuSans-subset.ttf");
 static FACE: OnceLock<Option<FontRef<'static>>> = OnceLock::new();
 
-/// The font. Also registers it with plotters, which draws no text without a font, not even in an SVG.
 pub(super) fn face() -> Result<&'static FontRef<'static>> {
-    let load = || {
-        register_font(FAMILY, FontStyle::Normal, BYTES).ok()?;
-        FontRef::try_from_slice(BYTES).ok()
-    };
     let broken = || Error::system("loading", "the embedded font", std::io::ErrorKind::InvalidData.into());
-    FACE.get_or_init(load).as_ref().ok_or_else(broken)
-}
-
-/// The font in plotters' terms.
-pub(super) fn describe(size: f64) -> FontDesc<'static> {
-    FontDesc::new(FontFamily::Name(FAMILY), size, FontStyle::Normal)
+    FACE.get_or_init(|| FontRef::try_from_slice(BYTES).ok()).as_ref().ok_or_else(broken)
 }
 
 /// Each glyph of `text` with the position of its origin in ems from the start, and the width of the whole.

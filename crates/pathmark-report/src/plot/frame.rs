@@ -116,12 +116,16 @@ impl Frame {
     }
 
     fn vertical_axis(&self, drawing: &mut Drawing, ticks: &[Tick]) {
+        grid_lines(drawing, ticks, |tick| [self.at(0.0, tick.place), self.at(1.0, tick.place)]);
+        let labelled = || ticks.iter().filter(|tick| !tick.label.is_empty());
+        for (foot, y) in labelled().map(|tick| self.at(0.0, tick.place)) {
+            drawing.path(vec![(foot, y), (foot - TICK, y)], INK, HAIRLINE);
+        }
         let mut free_below = f64::MAX;
-        for tick in ticks {
+        for tick in labelled() {
             let (foot, y) = self.at(0.0, tick.place);
-            grid_line(drawing, tick, (foot, y), (self.right, y), (foot - TICK, y));
             let half = 0.5 * SMALL_SIZE;
-            if !tick.label.is_empty() && y + half <= free_below {
+            if y + half <= free_below {
                 drawing.text((foot - TICK - GAP + 3.0, y), &tick.label, SMALL_SIZE, INK, Align::Right);
                 free_below = y - half - 2.0;
             }
@@ -157,34 +161,35 @@ fn lines(drawing: &mut Drawing, text: &str, mut y: f64, size: f64, colour: Colou
 /// Draws the horizontal axis of an area, given by its left, top, right and bottom: grid lines through the area, ticks
 /// and labels below it.
 pub(super) fn ruler(drawing: &mut Drawing, ticks: &[Tick], area: [f64; 4]) {
-    let [left, top, right, foot] = area;
+    grid(drawing, ticks, area);
+    let [left, _, right, foot] = area;
+    let labelled = || ticks.iter().filter(|tick| !tick.label.is_empty());
+    let x = |tick: &Tick| left + tick.place * (right - left);
+    for tick in labelled() {
+        drawing.path(vec![(x(tick), foot), (x(tick), foot + TICK)], INK, HAIRLINE);
+    }
     let mut free_from = f64::MIN;
-    for tick in ticks {
-        let x = left + tick.place * (right - left);
-        grid_line(drawing, tick, (x, foot), (x, top), (x, foot + TICK));
+    for tick in labelled() {
         let half = 0.5 * font::width(&tick.label, SMALL_SIZE);
-        if !tick.label.is_empty() && x - half >= free_from {
-            let at = (x, foot + TICK + GAP + 0.5 * SMALL_SIZE - 2.0);
+        if x(tick) - half >= free_from {
+            let at = (x(tick), foot + TICK + GAP + 0.5 * SMALL_SIZE - 2.0);
             drawing.text(at, &tick.label, SMALL_SIZE, INK, Align::Centre);
-            free_from = x + half + APART;
+            free_from = x(tick) + half + APART;
         }
     }
 }
 
 /// Draws only the grid lines, for an area whose axis is further below.
 pub(super) fn grid(drawing: &mut Drawing, ticks: &[Tick], [left, top, right, foot]: [f64; 4]) {
-    for tick in ticks {
-        let x = left + tick.place * (right - left);
-        drawing.path(vec![(x, foot), (x, top)], if tick.label.is_empty() { FAINT } else { GRID }, HAIRLINE);
-    }
+    let x = |tick: &Tick| left + tick.place * (right - left);
+    grid_lines(drawing, ticks, |tick| [(x(tick), foot), (x(tick), top)]);
 }
 
-/// Draws a line through the data area and the tick outside it; minor ticks have a fainter line and no tick.
-fn grid_line(drawing: &mut Drawing, tick: &Tick, foot: Place, end: Place, outside: Place) {
-    if tick.label.is_empty() {
-        drawing.path(vec![foot, end], FAINT, HAIRLINE);
-    } else {
-        drawing.path(vec![foot, end], GRID, HAIRLINE);
-        drawing.path(vec![foot, outside], INK, HAIRLINE);
+/// Draws the lines through the data area: first the fainter ones of ticks without a label, then the others.
+fn grid_lines(drawing: &mut Drawing, ticks: &[Tick], ends: impl Fn(&Tick) -> [Place; 2]) {
+    for (colour, is_minor) in [(FAINT, true), (GRID, false)] {
+        for tick in ticks.iter().filter(|tick| tick.label.is_empty() == is_minor) {
+            drawing.path(ends(tick).to_vec(), colour, HAIRLINE);
+        }
     }
 }

@@ -30,6 +30,8 @@ const BAR: f64 = 480.0;
 /// The ends of the colours used, as shares of the scale: lighter colours look idle, and darker ones hide the start of a
 /// job.
 const COLOURS: (f64, f64) = (0.15, 0.85);
+/// The number of different colours less one. Boxes of one colour are one element of an SVG.
+const SHADES: f64 = 63.0;
 /// Boxes of at least this width have an edge at the start of the job.
 const EDGED: f64 = 4.0;
 /// Width of that edge.
@@ -208,17 +210,24 @@ impl Figure for GanttChart {
             let end = x(schedule.makespan_s);
             drawing.rectangle([left, y, end, bottom], PAPER);
             let jobs = |worker| schedule.jobs.iter().filter(move |job| job.worker == worker && schedule.holds(job));
+            let (mut boxes, mut edges) = (Vec::new(), Vec::new());
             for (i, &worker) in shown.iter().enumerate() {
                 let bars = jobs(worker).map(|job| (x(job.start_s), x(job.stop_s), palette.share(job.value)));
                 let (top, rim) = (y + i as f64 * lane, if lane >= 8.0 { 1.5 } else { 0.0 });
                 for bar in merged(bars.collect()) {
-                    let colour = heat_colour(COLOURS.0 + bar.2 * (COLOURS.1 - COLOURS.0));
-                    drawing.rectangle([bar.0, top + rim, bar.1, top + lane - rim], colour);
+                    let [top, bottom] = [top + rim, top + lane - rim];
+                    boxes.push(((bar.2 * SHADES).round() as u32, [bar.0, top, bar.1, bottom]));
                     if bar.1 - bar.0 >= EDGED {
-                        drawing.rectangle([bar.0, top + rim, bar.0 + EDGE, top + lane - rim], INK);
+                        edges.push([bar.0, top, bar.0 + EDGE, bottom]);
                     }
                 }
             }
+            boxes.sort_by_key(|(shade, _)| *shade);
+            for (shade, sides) in boxes {
+                let share = f64::from(shade) / SHADES;
+                drawing.rectangle(sides, heat_colour(COLOURS.0 + share * (COLOURS.1 - COLOURS.0)));
+            }
+            edges.into_iter().for_each(|sides| drawing.rectangle(sides, INK));
             number_lanes(&mut drawing, &shown, left, y, lane);
             drawing.outline([left, y, end, bottom], MUTED);
             drawing.path(vec![(end, y - 3.0), (end, bottom + 3.0)], INK, LINE);

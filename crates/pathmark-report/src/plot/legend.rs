@@ -57,10 +57,10 @@ pub fn draw(drawing: &mut Drawing, entries: &[LegendEntry], (x, mut y): Place) {
         let ends = [(x, middle), (x + SAMPLE, middle)];
         drawing.part(PartKind::Legend, &entry.name, |drawing| {
             match entry.sample {
-                Sample::Line { colour, dash, width } => drawing.dashed(&ends, colour, width, dash),
+                Sample::Line { colour, dash, width } => drawing.dashed(ends.to_vec(), colour, width, dash),
                 Sample::Series { look, line } => {
                     if line {
-                        drawing.dashed(&ends, look.colour, LINE, look.dash);
+                        drawing.dashed(ends.to_vec(), look.colour, LINE, look.dash);
                     }
                     marker::draw(drawing, (x + 0.5 * SAMPLE, middle), look.marker, look.colour);
                 }

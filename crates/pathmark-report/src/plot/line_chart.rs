@@ -208,7 +208,7 @@ impl LineChart {
             let (colour, dash) = self.stroke(index, overlay);
             drawing.part(PartKind::Series, &overlay.label, |drawing| {
                 for stretch in frame.curve(|x, y| inside(&overlay.curve, x, y)) {
-                    drawing.dashed(&stretch, colour, FIT_LINE, dash);
+                    drawing.dashed(stretch, colour, FIT_LINE, dash);
                 }
             });
         }
@@ -249,7 +249,7 @@ impl LineChart {
             // A point without a position leaves a gap in the line.
             for run in spots.split(Option::is_none) {
                 let places: Vec<Place> = run.iter().flatten().copied().collect();
-                drawing.dashed(&places, series.look.colour, LINE, series.look.dash);
+                drawing.dashed(places, series.look.colour, LINE, series.look.dash);
             }
         }
         for (point, &spot) in series.points.iter().zip(&spots) {

@@ -1,8 +1,8 @@
 //! Figures: plain data in, SVG and PNG out.
 //!
-//! Code that cannot fail turns a chart into a [`Drawing`], a list of marks in pixels that tests can inspect. One
-//! generic function then paints the marks on either of plotters' backends. Text is set in an embedded font. So no font
-//! has to be installed, and equal data gives equal bytes.
+//! Code that cannot fail turns a chart into a [`Drawing`], a list of marks in pixels that tests can inspect. The marks
+//! become elements of an SVG, or pixels by plotters. Text is set in an embedded font. So no font has to be installed, and
+//! equal data gives equal bytes.
 
 pub mod axis;
 mod colour_bar;
@@ -25,6 +25,7 @@ pub mod panels;
 mod schedule_tests;
 pub mod stacked_bar;
 pub mod style;
+pub(crate) mod svg;
 #[cfg(test)]
 mod tests;
 
@@ -60,12 +61,7 @@ pub trait Figure {
 
     /// The figure as a complete SVG document, which can be embedded in an HTML page unchanged.
     fn svg(&self) -> Result<String> {
-        paint::svg(&self.drawing())
-    }
-
-    /// [`Figure::other_axes`] as an SVG document.
-    fn other_svg(&self) -> Result<Option<(&'static str, String)>> {
-        self.other_axes().map(|(name, drawing)| Ok((name, paint::svg(&drawing)?))).transpose()
+        svg::svg(&self.drawing())
     }
 
     /// The figure as a PNG file, with twice the width and height of the SVG.
