@@ -23,7 +23,8 @@ pub(crate) struct Member {
 /// The experiments of a page, sorted by their folders: those of the folder itself, or those of a class. A folder is a class
 /// if none in it has the name of its experiment, and there is more than one, or one with experiments in it.
 pub(crate) fn members(out: &Path) -> Result<Vec<Member>> {
-    let (with_rows, others): (Vec<PathBuf>, Vec<PathBuf>) = folders(out)?.into_iter().partition(|path| has_records(path));
+    let (with_rows, others): (Vec<PathBuf>, Vec<PathBuf>) =
+        folders(out)?.into_iter().partition(|path| has_records(path));
     let mut found = with_rows.into_iter().map(member).collect::<Result<Vec<Member>>>()?;
     // A folder of results may have others in it, such as those of earlier versions.
     if found.iter().all(|member| member.student.is_some()) {

@@ -1,7 +1,7 @@
 //! `pathmark claims`: the claims of the four reports, or of a ledger of one's own, beside the measurements.
 
-use super::prelude::*;
 use super::plan_of_claims::plan;
+use super::prelude::*;
 use crate::report::claims::{self, Agreement, Answer, Listing, Report, judge};
 
 /// `pathmark claims out --report A`

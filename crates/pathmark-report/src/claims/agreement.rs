@@ -5,9 +5,9 @@ use super::judge::{Answer, judge};
 use super::measurement::{Measurement, Scale};
 use super::verdict::Verdict;
 use crate::analysis::Interval;
+use crate::class::{Member, members};
 use crate::error::Result;
-use crate::experiment::read_records;
-use crate::experiment_folders;
+use crate::experiment::{read_records, records_path};
 use crate::lab::Lab;
 use crate::measure::ImageKey;
 use crate::words::counted;
@@ -136,7 +136,7 @@ impl Images {
     fn read(folders: &[PathBuf]) -> Result<Self> {
         let mut all = Self::default();
         for out in folders {
-            for folder in experiment_folders(out)? {
+            for Member { folder, .. } in members(out)? {
                 all.experiments += 1;
                 for row in read_records(&records_path(&folder))?.into_iter().filter(|row| row.error.is_empty()) {
                     all.rows += 1;
