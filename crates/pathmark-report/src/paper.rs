@@ -162,6 +162,10 @@ fn method(results: &Results) -> String {
     let rows = || results.rows();
     let cells = rows().map(|row| row.cell.as_str()).collect::<BTreeSet<_>>().len();
     let repetitions = rows().map(|row| row.repetition).collect::<BTreeSet<_>>().len();
+    let often = match repetitions {
+        0 | 1 => " once each".to_string(),
+        several => format!(" in up to {several} repetitions"),
+    };
     let machine = &results.run.machine;
     let version = if machine.commit.is_empty() { String::new() } else { format!(", commit {}", machine.commit) };
     let (version, machine) = (escaped(&version), escaped(&format!("{}, {}", machine.line(), machine.system)));
@@ -176,9 +180,8 @@ fn method(results: &Results) -> String {
         some => format!("\nThe times of {} are in doubt.", counted(some, "run")),
     };
     format!(
-        "We measured {} in up to {} with Pathmark{version}~\\cite{{pathmark}}, on {machine}.\n{pairs}\nIntervals have 95\\,\\% confidence where they name no other.{doubts}",
+        "We measured {}{often} with Pathmark{version}~\\cite{{pathmark}}, on {machine}.\n{pairs}\nIntervals have 95\\,\\% confidence where they name no other.{doubts}",
         counted(cells, "configuration"),
-        counted(repetitions, "repetition"),
     )
 }
 

@@ -82,12 +82,13 @@ proptest! {
         (scene, sampler) in (text(), text()), (width, height) in (1..9_u32, 1..9_u32), seed in any::<u64>(),
         (max_depth, camera_rays) in any::<(Option<u16>, Option<u16>)>(),
         roulette in prop::option::of(text()), changed in prop::option::of((text(), text(), text())), precision in text(), adaptive in any::<bool>(),
+        time_limit in prop::option::of(1e-3..1e3_f64),
     ) {
         let (scene_hash, estimator) = ("00ff".to_string(), "bsdf".to_string());
         let (clamp, filter, epsilon) = changed.map_or((None, None, None), |(clamp, filter, epsilon)| (Some(clamp), Some(filter), Some(epsilon)));
         let key = FilmKey {
             scene, scene_hash, estimator, sampler, seed, spp: 7, width, height, max_depth, camera_rays, roulette, clamp, filter, epsilon,
-            precision, adaptive,
+            precision, adaptive, time_limit_s: time_limit.map(Into::into),
             revision: 3,
         };
         let film = film(width, height, seed);

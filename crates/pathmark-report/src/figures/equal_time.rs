@@ -162,7 +162,11 @@ fn at_limits(results: &Results, contenders: &[Limited<'_>]) -> Result<Option<Pic
             let own = images.iter().enumerate().filter(|(_, (row, _))| is_own(row));
             let first = own.min_by_key(|(_, (row, _))| row.seed).map(|(index, _)| index);
             if let Some(index) = first {
-                group.push(Picture { caption: contender.caption(), image: images.swap_remove(index).1 });
+                let mut caption = contender.caption();
+                if races.len() > 1 {
+                    caption[0] = format!("{}: {}", told(race), contender.name);
+                }
+                group.push(Picture { caption, image: images.swap_remove(index).1 });
             }
         }
         if !group.is_empty()
