@@ -41,7 +41,9 @@ pub(crate) fn centre(values: &[f64]) -> Option<Centre> {
     winsorized.sort_by(f64::total_cmp);
     let value = Moments::of(&winsorized[trimmed..trimmed + kept]).mean()?;
     let (least, greatest) = (winsorized[trimmed], winsorized[trimmed + kept - 1]);
-    winsorized.iter_mut().for_each(|value| *value = value.clamp(least, greatest));
+    for own in &mut winsorized {
+        *own = own.clamp(least, greatest);
+    }
     let deviations = Moments::of(&winsorized).population_variance()? * values.len() as f64;
     let degrees_of_freedom = degrees_of_freedom(values.len()).filter(|degrees| *degrees > 0)?;
     let standard_error = (deviations / (kept * degrees_of_freedom) as f64).sqrt();
