@@ -82,7 +82,9 @@ fn sound_pools_pass_and_share_a_letter() {
     let commands: Vec<&str> = block.split("```").next().unwrap().lines().collect();
     let [graded, reported] = commands[..] else { panic!("{commands:?}") };
     let programs: Vec<&str> = graded.split_whitespace().filter(|word| word.contains('/')).collect();
-    programs.iter().for_each(|program| student(folder.path(), program, "sound"));
+    for program in &programs {
+        student(folder.path(), program, "sound");
+    }
     let arguments: Vec<&str> = graded.split_whitespace().skip(2).collect();
     let finished = grade(folder.path(), &arguments, 0);
     let grades = json(&folder.path().join("grades.json"));

@@ -269,7 +269,9 @@ fn ranked(judged: Vec<(Grade, Times)>) -> Vec<Grade> {
     timed.sort_by(|(a, _), (b, _)| b.speedup.unwrap_or(0.0).total_cmp(&a.speedup.unwrap_or(0.0)));
     let times: Vec<Times> = timed.iter().map(|(_, times)| times.clone()).collect();
     for (number, set) in groups(times.len(), &told_apart_in_pairs(&times, MISS)).into_iter().enumerate() {
-        set.into_iter().for_each(|member| timed[member].0.groups.push(number));
+        for member in set {
+            timed[member].0.groups.push(number);
+        }
     }
     timed.into_iter().chain(others).map(|(grade, _)| grade).collect()
 }
@@ -375,7 +377,9 @@ mod tests {
         assert_eq!(of(|row| row.strategy = "other".to_string()), ["it has no row"]);
         // The sweep blames the second image for the checksum of the first.
         let mut rows = rows(&[("mine", 0.5)], NOISE[0]);
-        rows.iter_mut().for_each(|row| row.error = "checksum right instead of wrong".to_string());
+        for row in &mut rows {
+            row.error = "checksum right instead of wrong".to_string();
+        }
         assert_eq!(graded(vec![("anna", rows)])[0].faults, [""; 0]);
     }
 
