@@ -47,7 +47,7 @@ fn schedules_of_one_speed_share_a_group_and_others_do_not() {
     assert_eq!(markdown.lines().filter(|line| line.starts_with("| ")).count(), 1 + 5, "{markdown}");
     let latex = run(folder.path(), &["rank", "ranked", "--latex"], 0);
     assert!(latex.out.contains("\\begin{tabular}{lrrrl}"), "{}", latex.out);
-    assert!(latex.out.contains(" & 1.000 & ") && latex.out.contains(" & c \\\\\n"), "{}", latex.out);
+    assert!(latex.out.contains("/2t & 1.000 & ") && latex.out.contains(" & c \\\\\n"), "{}", latex.out);
 }
 
 #[test]

@@ -85,7 +85,9 @@ pub(super) fn block(results: &Results, crops: &[Crop]) -> Result<Option<Block>> 
                 crop.check(&whole)?;
                 row.push(Some(crop.of(&whole)));
             }
-            crops.iter().for_each(|crop| crop.mark(&mut whole));
+            for crop in crops {
+                crop.mark(&mut whole);
+            }
             wholes.push(Some(whole));
         }
         rows.push(wholes);

@@ -114,7 +114,9 @@ pub(super) fn text(parts: &[Part], folder: &str) -> String {
     }
     let mut known = BTreeSet::new();
     let sources = applied.iter().flat_map(|rule| rule.sources).filter(|(key, _)| known.insert(*key));
-    let sources: String = sources.map(|(key, source)| format!("\\bibitem{{{key}}} {}\n", escaped(source))).collect();
+    let sources: Vec<String> =
+        sources.map(|(key, source)| format!("\\bibitem{{{key}}} {}\n", escaped(source))).collect();
+    let sources = sources.concat();
     let program = format!("\\bibitem{{pathmark}} The Pathmark authors. Pathmark {}.\n", env!("CARGO_PKG_VERSION"));
     format!(
         "% A draft by Pathmark. It is yours to edit: Pathmark replaces no paper.
@@ -140,19 +142,20 @@ pub(super) fn text(parts: &[Part], folder: &str) -> String {
 fn section(part: &Part, rules: &[&Rule]) -> String {
     let Part { results, blocks } = part;
     let definition = &results.definition;
-    let rules: String = rules.iter().map(|rule| format!("{}\n", rule.sentence)).collect();
-    let findings: String =
-        blocks.iter().filter_map(Block::as_finding).map(|finding| format!("\n{}\n", prose(finding))).collect();
+    let rules: Vec<&str> = rules.iter().map(|rule| rule.sentence).collect();
+    let findings: Vec<String> = blocks.iter().filter_map(Block::as_finding).map(prose).collect();
     let figures: String = blocks.iter().filter_map(|block| figure(&definition.name, block)).collect();
     let with_interval = blocks.iter().find_map(|block| match block {
         Block::Table { stem, table } if table.has_intervals() => Some(table_of(&definition.name, stem, table)),
         _ => None,
     });
     format!(
-        "\n\\section{{{}}}\n{}\n\n\\subsection*{{Method}}\n{}\n{rules}\n\\subsection*{{Results}}\n{findings}\n{figures}{}",
+        "\n\\section{{{}}}\n{}\n\n\\subsection*{{Method}}\n{}\n{}\n\n\\subsection*{{Results}}\n{}\n\n{figures}{}",
         prose(&definition.title),
         prose(definition.question.trim()),
         method(results),
+        rules.join("\n"),
+        findings.join("\n\n"),
         with_interval.unwrap_or_default(),
     )
 }
