@@ -9,10 +9,16 @@ program=$CARGO_TARGET_DIR/${profile/dev/debug}/my-pool
 rm -rf old out
 git worktree prune
 git worktree add --detach old "$base"
-# Both builds share their dependencies, so only the pool is compiled twice.
-(cd old && cargo build --profile "$profile")
+# Both builds share their dependencies, so only the pool is compiled twice. Cargo takes both for one package, and without
+# `clean` it would not compile the second one.
+build() (
+    cd "$1"
+    cargo clean --quiet --profile "$profile" --package my-pool
+    cargo build --profile "$profile"
+)
+build old
 cp "$program" old/before
-cargo build --profile "$profile"
+build .
 
 "$program" run bench --baseline old/before --until 5% --max-time "$time" "$@"
 "$program" diff out/baseline/bench out/bench --fail-above 5% --undecided pass
