@@ -107,17 +107,21 @@ window.addEventListener("load", () => {
   press(view, "e");
   press(view, "e");
   seen.same = pictures().every((picture, place) => picture === start[place]);
-  press(view, "+");
-  press(view, "ArrowRight");
-  seen.zoomed = pictures().map((picture, place) => picture !== start[place]);
+  const changes = (act) => {
+    const before = pictures();
+    act();
+    return pictures().map((picture, place) => picture !== before[place]);
+  };
+  seen.zoomed = changes(() => press(view, "+"));
+  seen.wheeled = changes(() => main.dispatchEvent(new WheelEvent("wheel", { deltaY: 1, ctrlKey: true, clientX, clientY, bubbles: true, cancelable: true })));
+  seen.moved = changes(() => press(view, "ArrowRight"));
   press(view, "0");
   edge.value = 1;
   edge.dispatchEvent(new Event("input"));
   seen.back = pictures().every((picture, place) => picture === start[place]);
-  press(view, "2");
-  seen.second = [pictures().map((picture, place) => picture !== start[place]), view.querySelector("select").value];
-  Array.from(view.querySelectorAll("button")).find((button) => button.textContent === "1:1").click();
-  seen.oneToOne = pictures()[0] !== start[0];
+  seen.second = [changes(() => press(view, "2")), view.querySelector("select").value];
+  const oneToOne = Array.from(view.querySelectorAll("button")).find((button) => button.textContent === "1:1");
+  seen.oneToOne = changes(() => oneToOne.click())[0];
   // The trace on the picture: no tile before the start, all at the end.
   const replay = document.querySelector("#timelines-timelines .replay");
   replay.closest("details").open = true;
@@ -346,6 +350,8 @@ fn check_viewer(seen: &Value) {
     for (what, expected) in [
         ("same", serde_json::json!(true)),
         ("zoomed", serde_json::json!([true, true])),
+        ("wheeled", serde_json::json!([true, true])),
+        ("moved", serde_json::json!([true, true])),
         ("back", serde_json::json!(true)),
         ("second", serde_json::json!([[true, true], "1"])),
         ("oneToOne", serde_json::json!(true)),

@@ -75,7 +75,9 @@
     const names = pictures.map((image, place) => [`${place + 1}: ${image.caption[0]}`, place]);
     const [left, right] = [chooser("Left", names), chooser("Right", names)];
     right.value = String(pictures.length - 1);
-    const kinds = [...new Set(maps.map((image) => image.caption[0]))];
+    // Maps of errors come first: the reference has none, but every picture has a part with all pixels.
+    const countOf = (name) => maps.filter((image) => image.caption[0] === name).length;
+    const kinds = [...new Set(maps.map((image) => image.caption[0]))].sort((a, b) => countOf(a) - countOf(b));
     const kind = kinds.length > 0 ? chooser("Beside", [...kinds, "nothing"].map((name) => [name, name])) : null;
     const edge = range("Edge", "edge", 0, 1, 0.01);
     const exposure = range("Exposure", "stops", -MOST_STOPS, MOST_STOPS, HALF_STOP);

@@ -9,7 +9,7 @@ use image::{ImageError, ImageFormat};
 use std::io;
 
 /// At this quality, the letters of captions are sharp, and noise looks as before.
-const QUALITY: u8 = 75;
+const QUALITY: u8 = 70;
 
 /// The picture of a PNG file as the source of an image element.
 pub(super) fn source(png: &[u8]) -> Result<String> {

@@ -227,7 +227,9 @@ impl Figure for GanttChart {
                 let share = f64::from(shade) / SHADES;
                 drawing.rectangle(sides, heat_colour(COLOURS.0 + share * (COLOURS.1 - COLOURS.0)));
             }
-            edges.into_iter().for_each(|sides| drawing.rectangle(sides, INK));
+            for sides in edges {
+                drawing.rectangle(sides, INK);
+            }
             number_lanes(&mut drawing, &shown, left, y, lane);
             drawing.outline([left, y, end, bottom], MUTED);
             drawing.path(vec![(end, y - 3.0), (end, bottom + 3.0)], INK, LINE);

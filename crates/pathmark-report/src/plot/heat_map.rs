@@ -27,6 +27,9 @@ pub struct Tile {
     pub value: f64,
 }
 
+/// The number of different colours less one. Tiles of one colour are one element of an SVG.
+const SHADES: f64 = 127.0;
+
 /// The figure: one image. Tiles whose value is not finite are grey, and it reports their number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatMap {
@@ -55,9 +58,14 @@ impl HeatMap {
     fn draw_image(&self, drawing: &mut Drawing, (left, top): (f64, f64), factor: f64, (low, high): (f64, f64)) {
         let x = |pixel: u32| left + f64::from(pixel.min(self.width)) * factor;
         let y = |pixel: u32| top + f64::from(pixel.min(self.height)) * factor;
-        for tile in &self.tiles {
+        let shade = |tile: &Tile| {
             let share = if high > low { ((tile.value - low) / (high - low)).clamp(0.0, 1.0) } else { 0.5 };
-            let colour = if tile.value.is_finite() { heat_colour(share) } else { GRID };
+            tile.value.is_finite().then(|| (share * SHADES).round() as u32)
+        };
+        let mut tiles: Vec<(Option<u32>, &Tile)> = self.tiles.iter().map(|tile| (shade(tile), tile)).collect();
+        tiles.sort_by_key(|(shade, _)| *shade);
+        for (shade, tile) in tiles {
+            let colour = shade.map_or(GRID, |shade| heat_colour(f64::from(shade) / SHADES));
             drawing.rectangle([x(tile.x0), y(tile.y0), x(tile.x1), y(tile.y1)], colour);
         }
         drawing.outline([left, top, x(self.width), y(self.height)], INK);

@@ -61,7 +61,7 @@ fn paint<B: DrawingBackend>(marks: &[Mark], area: &DrawingArea<B, Shift>, scale:
             match mark {
                 Mark::Path { places, colour, width, dash } => {
                     let style = opaque(*colour).stroke_width((width * scale).round().max(1.0) as u32);
-                    for stroke in strokes(places, *dash).iter().filter(|stroke| stroke.len() > 1) {
+                    for stroke in strokes(places, dash).iter().filter(|stroke| stroke.len() > 1) {
                         area.draw(&PathElement::new(device(stroke, scale), style))?;
                     }
                 }
