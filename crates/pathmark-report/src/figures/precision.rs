@@ -3,6 +3,7 @@
 use super::kernels::any_kernel;
 use crate::analysis::mean::t_interval;
 use crate::contenders::root_of_mean;
+use crate::plot::number::short;
 use crate::prelude::*;
 
 const DOUBLE: &str = "f64";
@@ -46,7 +47,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .filter_map(|pair| Some(DotRow::new(&pair.name, vec![Some(Estimated::from(pair.light?).times(1e4).dot())])));
     let axis =
         Axis::linear("light of single precision over that of double, less 1, in ten-thousandths").including([0.0]);
-    let mut plot = DotPlot::new("Is single precision darker or lighter?", axis, dots.collect());
+    let title = Title::new("Is single precision darker or lighter?").with_result(result(&pairs));
+    let mut plot = DotPlot::new(title, axis, dots.collect());
     plot.guides = vec![(0.0, "as light".to_string())];
     plot.subtitle = results.run.machine.line();
     plot.caption =
@@ -67,4 +69,23 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("invalid samples, single", |pair| sum(&pair.single, |row| row.invalid_samples))
         .end();
     Ok(vec![Block::figure("precision", plot), table])
+}
+
+/// The result in a line: the pair whose light certainly changes most.
+fn result(pairs: &[Pair<'_>]) -> Option<String> {
+    let lights = pairs.iter().filter_map(|pair| Some((pair, pair.light?)));
+    let changed = lights.clone().filter(|(_, light)| !light.interval.contains(0.0));
+    let (count, all) = (changed.clone().count(), lights.count());
+    if all == 0 {
+        return None;
+    }
+    let most = changed.max_by(|a, b| a.1.value.abs().total_cmp(&b.1.value.abs()));
+    Some(most.map_or_else(
+        || "Single precision is neither darker nor lighter beyond the noise".to_string(),
+        |(pair, light)| {
+            let side = if light.value < 0.0 { "darker" } else { "lighter" };
+            let share = short(1e4 * light.value.abs(), 2);
+            format!("In single precision, {} is {share} ten-thousandths {side}; {count} of {all} differ", pair.name)
+        },
+    ))
 }

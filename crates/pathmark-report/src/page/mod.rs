@@ -16,6 +16,7 @@ use crate::experiment::{Chapter, Definition, RunFile};
 use crate::measure::{LeftOut, Record, TimingConcerns};
 use crate::prelude::joined;
 use crate::results::Results;
+use crate::shell;
 use crate::words::counted;
 use again::Again;
 use block::Block;
@@ -303,7 +304,7 @@ fn sources(sections: &[Section]) -> Markup {
 fn section(section: &Section, is_chapter: bool, styles: &mut Styles) -> Result<Markup> {
     let first_table = section.blocks.iter().position(|block| matches!(block, Block::Table { .. }));
     let blocks = section.blocks.iter().enumerate();
-    let parts = blocks.map(|(at, block)| part(&section.name, block, first_table == Some(at), styles));
+    let parts = blocks.map(|(at, block)| part(section, block, first_table == Some(at), styles));
     let parts = parts.collect::<Result<Vec<Markup>>>()?;
     Ok(html! {
         section.disturbed[section.is_disturbed()] id=(section.name) data-again=[section.again.as_ref().map(json)] {
@@ -347,13 +348,13 @@ fn failures(failed: &[Record]) -> Vec<(&str, Vec<&str>)> {
     errors
 }
 
-fn part(section: &str, block: &Block, is_first_table: bool, styles: &mut Styles) -> Result<Markup> {
+fn part(section: &Section, block: &Block, is_first_table: bool, styles: &mut Styles) -> Result<Markup> {
     Ok(match block {
         Block::Answer { .. } => Markup::default(),
         Block::Finding(text) => html! { p.finding { (prose(text)) } },
         Block::Notice(text) => html! { p.notice { (prose(text)) } },
         Block::Figure { stem, figure } => html! {
-            figure id={ (section) "-" (stem) } {
+            figure id={ (section.name) "-" (stem) } {
                 (PreEscaped(styles.compact(&figure.svg()?)))
                 @if let Some((name, svg)) = figure.other_svg()? { div.other hidden data-name=(name) { (PreEscaped(styles.compact(&svg))) } }
                 @if let Some(data) = figure.data() { script.jobs type="application/json" { (PreEscaped(in_script(&data))) } }
@@ -361,7 +362,7 @@ fn part(section: &str, block: &Block, is_first_table: bool, styles: &mut Styles)
             }
         },
         Block::Picture { stem, title, png, comparison, images } => html! {
-            figure.sheet id={ (section) "-" (stem) } {
+            figure.sheet id={ (section.name) "-" (stem) } {
                 img alt=(title) src=(photo::source(png)?);
                 script.images type="application/json" { (PreEscaped(in_script(&json(&(comparison, images))))) }
                 (numbered(section, stem))
@@ -371,10 +372,22 @@ fn part(section: &str, block: &Block, is_first_table: bool, styles: &mut Styles)
     })
 }
 
-/// The number of a figure, which the style sheet counts, and a link to it.
-fn numbered(section: &str, stem: &str) -> Markup {
-    html! { figcaption { a href={ "#" (section) "-" (stem) } {} } }
+/// The number of a figure, which the style sheet counts, a link to it, and its origin.
+fn numbered(section: &Section, stem: &str) -> Markup {
+    html! { figcaption { a href={ "#" (section.name) "-" (stem) } {} (origin(section)) } }
 }
+
+/// The rows of a figure, and the link to the commands that draw it or measure it again.
+fn origin(section: &Section) -> Markup {
+    html! {
+        @if let Some(rows) = section.files.first() {
+            span.origin { " " a href=(rows) { "Rows" } ", " a href={ "#" (section.name) "-" (AGAIN) } { "commands" } }
+        }
+    }
+}
+
+/// The end of the anchor of a section's commands.
+const AGAIN: &str = "again";
 
 /// Data for the page's script.
 fn json(data: &impl Serialize) -> String {
@@ -470,6 +483,12 @@ fn provenance(section: &Section, run: &RunFile) -> Markup {
         @if !section.files.is_empty() {
             p.files {
             "Raw data: " @for (place, file) in section.files.iter().enumerate() { @if place > 0 { ", " } a href=(file) { (file) } } "."
+            }
+            p.files id={ (section.name) "-" (AGAIN) } {
+                "To draw the figures again, in the folder of this page: " code.redraw { (shell::command(["report", "."])) } "."
+                @if let Some(again) = &section.again {
+                    " To measure again, in the folder where it was measured: " code.measure { (again.whole()) } "."
+                }
             }
         }
         details open[false] {
