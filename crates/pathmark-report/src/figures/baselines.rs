@@ -44,7 +44,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     all.sort_by(|a, b| a.speedup.falling(&b.speedup));
     let dots = all.iter().map(|a| DotRow::new(a.name(), vec![Some(Estimated::from(a.speedup).dot())])).collect();
     let ends = titles::ends_apart(all.iter().map(|against| ((), Estimated::from(against.speedup))));
-    let result = ends.map(|[(_, least), (_, most)]| {
+    let result = ends.map(|[((), least), ((), most)]| {
         format!("The baseline alone changes the speedup from {:.2} to {:.2}", least.value, most.value)
     });
     let title = Title::new("One schedule against several baselines").with_result(result);

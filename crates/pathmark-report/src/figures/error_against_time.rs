@@ -50,7 +50,7 @@ fn result(contenders: &[Contender]) -> Option<String> {
     let interval = ratio.interval;
     Some(match (interval.low > 1.0, interval.high < 1.0) {
         (true, _) => {
-            format!("{} reaches an RMSE of {rmse} {} times as fast as {}", best.name, titles::told(ratio)?, first.name)
+            format!("{} is {} times as fast as {} to an RMSE of {rmse}", best.name, titles::told(ratio)?, first.name)
         }
         (_, true) => format!("{} reaches an RMSE of {rmse} sooner than {}, the next", first.name, best.name),
         _ => format!("This machine cannot tell what reaches an RMSE of {rmse} first"),

@@ -1,6 +1,7 @@
 //! Efficiency against the size of a job, the size at which half is lost (METG), and the overhead of a job.
 
 use crate::analysis::metg::{Grain, HALF, Metg, metg};
+use crate::measure::SERIAL;
 use crate::plot::Panels;
 use crate::plot::number::short;
 use crate::prelude::*;
@@ -105,8 +106,9 @@ fn result(found: &[(&String, Metg)]) -> Option<String> {
         Metg::Above(most) => format!("more than {} µs", short(most * 1e6, 2)),
         Metg::Undefined(_) => String::new(),
     };
+    let parallel = found.iter().filter(|(name, _)| !is_serial(name));
     let known: Vec<(&str, &Metg, [f64; 2])> =
-        found.iter().filter_map(|(name, found)| Some((name.as_str(), found, ends(found)?))).collect();
+        parallel.filter_map(|(name, found)| Some((name.as_str(), found, ends(found)?))).collect();
     let (best, small, [_, high]) = known.iter().min_by(|a, b| a.2[1].total_cmp(&b.2[1]))?;
     let (worst, large, [low, _]) = known.iter().max_by(|a, b| a.2[0].total_cmp(&b.2[0]))?;
     let (small, large) = (size(small), size(large));
@@ -189,6 +191,11 @@ fn name(results: &Results, row: &Row) -> String {
     joined([results.series_name(row), row.schedule.name.clone()])
 }
 
+/// Whether a name is that of the serial program, which hands out no jobs.
+fn is_serial(name: &str) -> bool {
+    name.split([',', ' ']).any(|word| word == SERIAL)
+}
+
 /// The size in microseconds, and its uncertainty.
 fn in_words(found: &Metg) -> [String; 2] {
     let microseconds = |seconds: f64| format!("{:.3}", seconds * 1e6);
@@ -218,7 +225,8 @@ fn overhead(results: &Results, baseline: &Baseline<'_>) -> Block {
     let mut extra = medians(extra, results.stopping());
     extra.sort_by(|(_, a), (_, b)| (a.is_partial).cmp(&b.is_partial).then(a.value.total_cmp(&b.value)));
     let rows = extra.iter().map(|(name, told)| DotRow::new(name, vec![Some(told.dot())])).collect();
-    let ends = titles::ends_apart(extra.iter().map(|(name, told)| (name.as_str(), *told)));
+    let parallel = extra.iter().filter(|(name, _)| !is_serial(name));
+    let ends = titles::ends_apart(parallel.map(|(name, told)| (name.as_str(), *told)));
     let result = ends.map(|[(cheap, least), (dear, most)]| {
         let [least, most] = [least, most].map(|told| short(told.value, 2));
         format!("A job costs {least} ns beside its work with {cheap}, {most} ns with {dear}")
@@ -255,6 +263,7 @@ mod tests {
         let open = told(of(2e-6, 1e-6, 8.5e-6), large());
         assert_eq!(open, "This machine cannot tell which strategy keeps up with the smallest jobs");
         assert_eq!(result(&[(&names[0], Metg::Undefined(""))]), None);
+        assert_eq!(result(&[(&"serial".to_string(), large())]), None);
     }
 
     /// Work of 12 s takes 8 s on a fast core and one of half its speed: that is all of both, and three quarters of two fast ones.

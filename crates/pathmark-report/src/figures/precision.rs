@@ -71,21 +71,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(vec![Block::figure("precision", plot), table])
 }
 
-/// The result in a line: the pair whose light certainly changes most.
+/// The result in a line: a bound that the intervals of all pairs share.
 fn result(pairs: &[Pair<'_>]) -> Option<String> {
-    let lights = pairs.iter().filter_map(|pair| Some((pair, pair.light?)));
-    let changed = lights.clone().filter(|(_, light)| !light.interval.contains(0.0));
-    let (count, all) = (changed.clone().count(), lights.count());
-    if all == 0 {
-        return None;
-    }
-    let most = changed.max_by(|a, b| a.1.value.abs().total_cmp(&b.1.value.abs()));
-    Some(most.map_or_else(
-        || "Single precision is neither darker nor lighter beyond the noise".to_string(),
-        |(pair, light)| {
-            let side = if light.value < 0.0 { "darker" } else { "lighter" };
-            let share = short(1e4 * light.value.abs(), 2);
-            format!("In single precision, {} is {share} ten-thousandths {side}; {count} of {all} differ", pair.name)
-        },
-    ))
+    let ends = pairs.iter().filter_map(|pair| pair.light).flat_map(|light| [light.interval.low, light.interval.high]);
+    let most = ends.map(f64::abs).reduce(f64::max)?;
+    Some(format!("Single precision changes the light by at most {} ten-thousandths", short(1e4 * most, 2)))
 }

@@ -339,9 +339,10 @@ impl Speedups<'_> {
         if rows.iter().any(|row| row.dots[threads.len()].is_some()) {
             names.push("a thread per job".to_string());
         }
-        let mut plot = DotPlot::new(title, Axis::linear(axis).including([0.9]), rows).grouped(names);
         // Speedups of one number of threads are read without those of the others.
-        plot.side_by_side = (2..=MOST_AREAS).contains(&plot.groups.len());
+        let side_by_side = (2..=MOST_AREAS).contains(&names.len());
+        let axis = Axis::linear(axis).including(Some(0.9).filter(|_| !side_by_side));
+        let mut plot = DotPlot { side_by_side, ..DotPlot::new(title, axis, rows).grouped(names) };
         let rows = own.iter().flat_map(|(schedule, _)| self.serial.rows(schedule).iter().copied());
         plot.subtitle = self.results.workload_of(&rows.collect::<Vec<&Row>>());
         plot.caption = ratio_bars(own.iter().map(|(_, speedup)| *speedup));

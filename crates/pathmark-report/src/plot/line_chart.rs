@@ -254,7 +254,7 @@ impl LineChart {
         match end {
             End::Series(index) => {
                 let mut spots = self.series[index].points.iter().rev().filter_map(|point| frame.spot(point.x, point.y));
-                spots.next().map(|spot| (spot.0 + self.shift(index), spot.1))
+                spots.next().map(|spot| (spot.0 + self.shift(index) + BESIDE, spot.1))
             }
             End::Guide(index) => {
                 let stretches = frame.curve(|x, y| inside(&self.overlays[index].curve, x, y));
