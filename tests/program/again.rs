@@ -13,9 +13,7 @@ use std::process::Command;
 fn offered(page: &Path) -> Vec<Value> {
     let page = fs::read_to_string(page).unwrap();
     let parts = page.split("data-again=\"").skip(1).map(|part| part.split('"').next().unwrap());
-    let text =
-        |part: &str| part.replace("&quot;", "\"").replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&");
-    parts.map(|part| serde_json::from_str(&text(part)).unwrap()).collect()
+    parts.map(|part| serde_json::from_str(&unescaped(part)).unwrap()).collect()
 }
 
 /// Every filter of an experiment from a file, with a scene from a file and other values, all with names that a shell
@@ -39,20 +37,65 @@ fn the_commands_of_the_page_run() {
     let filters: BTreeSet<String> = offer["filters"].as_object().unwrap().values().map(word).collect();
     assert!(filters.contains("--filter 'scene=my files/a $room.toml'"), "{filters:?}");
     assert!(filters.contains("--filter strategy=work-stealing"), "{filters:?}");
-    let mut path = cargo_bin!("pathmark").parent().unwrap().as_os_str().to_owned();
-    path.push(":");
-    path.push(std::env::var_os("PATH").unwrap_or_default());
     for filter in filters.iter().map(String::as_str).chain([""]) {
-        let line = format!("{head} {filter} {end}");
-        let mut shell = Command::new("sh");
-        shell.args(["-c", &line]).env("PATH", &path).env("TMPDIR", folder.path()).current_dir(folder.path());
-        let output = shell.output().unwrap();
-        assert!(output.status.success(), "{line}\n{}", String::from_utf8_lossy(&output.stderr));
+        in_shell(&format!("{head} {filter} {end}"), folder.path());
     }
     // Rows of a file that was edited since cannot be measured again, so nothing is offered.
     fs::write(folder.path().join(experiment), text.replace("spp = [4]", "spp = [8]")).unwrap();
     finish(pathmark(folder.path(), &["report", "out"])).with_code(0);
     assert!(offered(&folder.path().join("out/report.html")).is_empty());
+}
+
+/// Text of a page with its escapes undone.
+fn unescaped(text: &str) -> String {
+    text.replace("&quot;", "\"").replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")
+}
+
+/// The texts between two marks of a page.
+fn between<'a>(page: &'a str, start: &str, end: &str) -> Vec<&'a str> {
+    page.split(start).skip(1).filter_map(|part| part.split(end).next()).collect()
+}
+
+/// Every link that leads out of the page leads to a file beside it, every figure links to its rows and commands, and the
+/// commands run as they are printed: one draws the same figures again.
+#[test]
+fn links_lead_to_files_and_figures_are_drawn_again() {
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), &TINY.replace("repetitions = 3", "repetitions = 1"));
+    finish(pathmark(folder.path(), &["run", "tiny.toml", "--out", "out"])).with_code(0);
+    let out = folder.path().join("out");
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    let links: BTreeSet<&str> = between(&page, "href=\"", "\"").into_iter().collect();
+    let files: Vec<&str> =
+        links.iter().copied().filter(|link| !link.starts_with('#') && !link.contains("://")).collect();
+    assert!(files.contains(&"tiny/records.csv") && files.contains(&"tiny/machine.toml"), "{files:?}");
+    for file in files {
+        assert!(out.join(file).is_file(), "{file}");
+    }
+    let captions = between(&page, "<figcaption>", "</figcaption>");
+    assert_eq!(captions.len(), page.matches("<figure").count());
+    for caption in captions {
+        assert!(caption.contains("href=\"tiny/records.csv\"") && caption.contains("href=\"#tiny-again\""), "{caption}");
+    }
+    assert!(page.contains("id=\"tiny-again\""));
+    let printed = |kind: &str| unescaped(between(&page, &format!("<code class=\"{kind}\">"), "</code>")[0]);
+    let figure = out.join("tiny/figures/speedup.svg");
+    let drawn = fs::read(&figure).unwrap();
+    fs::remove_dir_all(out.join("tiny/figures")).unwrap();
+    in_shell(&printed("redraw"), &out);
+    assert_eq!(fs::read(&figure).unwrap(), drawn);
+    in_shell(&printed("measure"), folder.path());
+}
+
+/// Runs a line in a shell that finds the program.
+fn in_shell(line: &str, folder: &Path) {
+    let mut path = cargo_bin!("pathmark").parent().unwrap().as_os_str().to_owned();
+    path.push(":");
+    path.push(std::env::var_os("PATH").unwrap_or_default());
+    let mut shell = Command::new("sh");
+    shell.args(["-c", line]).env("PATH", &path).env("TMPDIR", folder).current_dir(folder);
+    let output = shell.output().unwrap();
+    assert!(output.status.success(), "{line}\n{}", String::from_utf8_lossy(&output.stderr));
 }
 
 /// The page's script joins the parts of a command, which are quoted already. Needs Node; without it the test says so and

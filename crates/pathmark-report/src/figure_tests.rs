@@ -2,6 +2,7 @@
 
 use super::block::Block;
 use super::figures::blocks;
+use super::page::table::Table;
 use super::plot::drawing::Note;
 use super::tests::{results, row, svg, table, words};
 use crate::measure::Record;
@@ -13,6 +14,15 @@ fn notes(blocks: &[Block], name: &str) -> Vec<Note> {
         _ => None,
     });
     figure.unwrap_or_else(|| panic!("no figure {name}"))
+}
+
+/// The table of that name.
+fn table<'a>(blocks: &'a [Block], name: &str) -> &'a Table {
+    let table = blocks.iter().find_map(|block| match block {
+        Block::Table { stem, table } if *stem == name => Some(table),
+        _ => None,
+    });
+    table.unwrap_or_else(|| panic!("no table {name}"))
 }
 
 /// The only value of a series at a place.
@@ -54,6 +64,55 @@ fn schedules_that_are_not_told_apart_are_marked_and_sizes_are_not_mixed() {
     assert_eq!(names(&others), ["pool-10, 16x6"]);
     let text = svg(&blocks, "speedup");
     assert!(text.contains("2 processors") && text.contains("8x6") && !text.contains("16x6"));
+    // In half of the repetitions the others take 2, in half 2.02 times the time.
+    assert!(text.contains("Nine schedules tie at 2.01 times serial; pool-1 takes 2 times as long"), "{text}");
+    assert!(text.contains("Speedup by strategy"));
+    // The table has the nine others, those that tie first.
+    let rows: Vec<Vec<String>> = self::table(&blocks, "beside-the-fastest").rows().collect();
+    assert_eq!(rows.len(), 10);
+    assert!(rows[9][0] == "pool-1" && rows[9][2].starts_with("2.0") && rows[9][3] == "slower", "{rows:?}");
+    assert!(rows[1..9].iter().all(|row| row[3] == "not told apart"), "{rows:?}");
+}
+
+/// Two strategies of which each is faster in half of the repetitions, and one that is faster than OpenMP in each.
+#[test]
+fn titles_claim_only_results_that_the_intervals_support() {
+    let rows = |others: &[(&str, [f64; 2])]| -> Vec<Record> {
+        let own = |strategy: &str, repetition: u32, threads: usize, seconds: f64| Record {
+            strategy: strategy.to_string(),
+            repetition,
+            threads,
+            makespan_s: Some(seconds),
+            ..row()
+        };
+        let of = |repetition: u32| {
+            let others =
+                others.iter().map(move |(name, turns)| own(name, repetition, 2, turns[repetition as usize % 2]));
+            others.chain([own("serial", repetition, 1, 4.0)]).collect::<Vec<Record>>()
+        };
+        (0..6).flat_map(of).collect()
+    };
+    let title = |figure: &str, others: &[(&str, [f64; 2])]| {
+        let blocks = blocks(&results(&[figure], "", rows(others)).unwrap()).unwrap();
+        svg(&blocks, figure)
+    };
+    let open = title("speedup", &[("one", [2.0, 2.1]), ("other", [2.1, 2.0])]);
+    assert!(open.contains("This machine cannot tell 2 schedules apart: "), "{open}");
+    let one = title("speedup", &[("one", [2.5, 2.5])]);
+    assert!(one.contains("one is 1.6 times as fast as serial on 2 processors"), "{one}");
+    let apart = title("speedup", &[("one", [2.0, 2.0]), ("other", [2.52, 2.52])]);
+    assert!(apart.contains("one is the fastest, 2 times serial; other takes 26 % longer"), "{apart}");
+    let yardstick = ("openmp-dynamic", [2.0, 2.0]);
+    let openmp = |others: &[(&str, [f64; 2])]| title("openmp", &[&[yardstick], others].concat());
+    let dynamic = "OpenMP's dynamic schedule";
+    let open = openmp(&[("one", [1.9, 2.1])]);
+    assert!(open.contains(&format!("This machine cannot tell 1 schedule from {dynamic}")), "{open}");
+    let faster = openmp(&[("one", [1.8, 1.8]), ("other", [1.9, 2.1])]);
+    let told = format!("one takes 10 % less time than {dynamic}; 1 of 2 schedules tie with it");
+    assert!(faster.contains(&told), "{faster}");
+    let slower = openmp(&[("one", [2.0, 2.0]), ("other", [2.1, 2.1])]);
+    let told = format!("No schedule is faster than {dynamic}: 1 of 2 schedules tie with it, other takes 5.0 % longer");
+    assert!(slower.contains(&told), "{slower}");
 }
 
 /// A kernel that needs a second to start and none for samples: short renders would show the start.
@@ -72,6 +131,8 @@ fn kernels_are_compared_at_the_most_samples_that_both_have() {
     let notes = notes(&blocks, "kernels");
     let [only] = &notes[..] else { panic!("{notes:?}") };
     assert!(only.of.contains("64 spp") && close(only.value, 64.0 / 7.4), "{only:?}");
+    let title = "The fastest kernel is 8.65 times as fast as the scalar kernel";
+    assert!(svg(&blocks, "kernels").contains(title));
 }
 
 /// Two generators at two numbers of samples stand below each other, in seconds.
@@ -100,6 +161,8 @@ fn the_seconds_of_a_sample_are_compared_with_those_of_the_longest_renders() {
     let at = |spp: &str| found.iter().find(|note| note.of == spp).unwrap().value;
     assert!(close(at("4"), 1.25 / 1.0625) && close(at("8"), 1.125 / 1.0625), "{found:?}");
     assert!(!found.iter().any(|note| note.of == "16"), "the longest is 1 by construction");
+    let title = "Short renders pay for their start: at 4 samples per pixel a sample takes 18 % longer";
+    assert!(svg(&blocks, "time-per-sample").contains(title));
 }
 
 /// An epsilon that adds 3 % of light, one that takes a hundredth of a percent, and one that is too small to matter.
@@ -141,6 +204,8 @@ fn roughness_compares_the_reports_way_on_the_object() {
     let found = notes(&blocks, "roughness");
     let error = found.iter().find(|note| note.series.starts_with("squared error")).unwrap();
     assert!(close(error.value, 8.0), "{found:?}");
+    let title = "On kd-ks-25 the cosine leaves 8 times the squared error of the facets";
+    assert!(svg(&blocks, "roughness").contains(title));
 }
 
 /// A slope is fitted to four numbers of samples, and not to three.

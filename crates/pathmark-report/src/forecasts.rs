@@ -203,18 +203,22 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str, equal_cores: bool, nam
     let doubled = std::iter::successors(Some(1), |cores| Some(2 * cores)).take_while(|cores| *cores <= most);
     let ticks: Vec<f64> = doubled.chain([most]).map(|cores| cores as f64).collect();
     let axis = || Axis::log("cores").ticks_at(ticks.clone());
-    let mut speedup =
-        LineChart::new("Forecast: speedup", axis(), Axis::log("speedup"), series(|row| Some(row.speedup)));
+    let [best, useful, limit] = results(rows);
+    let title = |description: &str, result| Title::new(description).with_result(result);
+    let speedups = series(|row| Some(row.speedup));
+    let mut speedup = LineChart::new(title("Forecast: speedup", best), axis(), Axis::log("speedup"), speedups);
     speedup.overlays = vec![Overlay::guide("one per core", Curve::Line { intercept: 0.0, slope: 1.0 })];
     if let Some(bound) = bound {
         speedup.overlays.push(Overlay::guide("work / longest job", Curve::Line { intercept: bound, slope: 0.0 }));
     }
     let efficiency_axis = Axis::linear("speedup per core").including([0.0, 1.0]);
-    let mut efficiency = LineChart::new("Forecast: efficiency", axis(), efficiency_axis, series(Forecast::efficiency));
+    let efficiencies = series(Forecast::efficiency);
+    let mut efficiency = LineChart::new(title("Forecast: efficiency", useful), axis(), efficiency_axis, efficiencies);
     efficiency.overlays = vec![Overlay::guide("ideal: 1", Curve::Line { intercept: 1.0, slope: 0.0 })];
     let mut makespans = series(|row| Some(row.makespan_s));
     makespans.extend(bounds(rows, makespans.len(), equal_cores));
-    let makespan = LineChart::new("Forecast: makespan and its bounds", axis(), Axis::log("seconds"), makespans);
+    let title = title("Forecast: makespan and its bounds", limit);
+    let makespan = LineChart::new(title, axis(), Axis::log("seconds"), makespans);
     let band =
         rows.iter().map(|row| (row.traces, row.calibrations)).max().map_or_else(String::new, |(t, c)| band(t, c));
     let charts = [("forecast-speedup", speedup), ("forecast-efficiency", efficiency), ("forecast-makespan", makespan)];
@@ -239,6 +243,35 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str, equal_cores: bool, nam
             .end(),
     );
     blocks
+}
+
+/// The results in a line each: the highest speedup, the cores that are of use, and the limit of the time.
+fn results(rows: &[Forecast]) -> [Option<String>; 3] {
+    let most = rows.iter().map(|row| row.workers).max().filter(|most| *most > 1);
+    let best = most.and_then(|most| {
+        let best = rows.iter().filter(|row| row.workers == most);
+        let best = best.max_by(|a, b| a.speedup.value.total_cmp(&b.speedup.value))?;
+        let speedup = titles::told(best.speedup)?;
+        Some(format!(
+            "On {most} cores the best schedule, {}, would be {speedup} times as fast as serial",
+            best.strategy
+        ))
+    });
+    let keeps_half = |row: &&Forecast| {
+        let interval = row.efficiency().and_then(|efficiency| efficiency.interval);
+        row.workers > 1 && interval.is_some_and(|interval| interval.low >= 0.5)
+    };
+    let useful = rows.iter().filter(keeps_half).map(|row| row.workers).max();
+    let useful =
+        useful.map(|cores| format!("Up to {cores} cores, the best schedule turns half of them or more into speedup"));
+    let limited = rows.iter().filter(|row| row.longest_s >= row.share_s).map(|row| row.workers).min();
+    let limit = most.map(|most| match limited {
+        Some(cores) => {
+            format!("From {cores} cores on, the longest job takes as long as an equal share of the work or longer")
+        }
+        None => format!("Up to {most} cores, an equal share of the work takes longer than any job"),
+    });
+    [best, useful, limit]
 }
 
 /// The value of a row that a line of a chart shows.
@@ -281,4 +314,36 @@ fn representatives(rows: &[Forecast], named: &[String]) -> Vec<String> {
         }
     }
     shown.into_iter().map(|(name, _)| name).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Work of 8 s whose longest job takes 2 s, so that four cores reach it; eight cores are half as fast as eight.
+    #[test]
+    fn results_tell_the_gain_the_useful_cores_and_the_limit() {
+        let row = |(workers, speedup): (usize, f64)| {
+            let interval = Interval { low: 0.99 * speedup, high: 1.01 * speedup, level: LEVEL };
+            let crossed = |value: f64, interval| Crossed { value, interval };
+            Forecast {
+                strategy: "dynamic".to_string(),
+                workers,
+                traces: 3,
+                calibrations: 1,
+                makespan_s: crossed(8.0 / speedup, None),
+                speedup: crossed(speedup, Some(interval)),
+                share_s: 8.0 / workers as f64,
+                longest_s: 2.0,
+                greedy_s: 0.0,
+            }
+        };
+        let rows: Vec<Forecast> = [(1, 1.0), (2, 2.0), (4, 3.5), (8, 4.0)].into_iter().map(row).collect();
+        let told = results(&rows).map(Option::unwrap);
+        assert_eq!(told[0], "On 8 cores the best schedule, dynamic, would be 4 times as fast as serial");
+        assert_eq!(told[1], "Up to 4 cores, the best schedule turns half of them or more into speedup");
+        assert_eq!(told[2], "From 4 cores on, the longest job takes as long as an equal share of the work or longer");
+        let [best, useful, limit] = results(&rows[..1]);
+        assert_eq!((best, useful, limit), (None, None, None));
+    }
 }

@@ -25,6 +25,7 @@ mod serial;
 #[cfg(test)]
 mod tests;
 pub mod timeline;
+mod titles;
 #[cfg(test)]
 mod trace_tests;
 pub mod why;

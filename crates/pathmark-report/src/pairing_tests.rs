@@ -247,7 +247,7 @@ fn cells_with_fewer_repetitions_are_hollow_and_not_ranked() {
     let finding = blocks.iter().find_map(Block::as_finding).unwrap();
     // Paired with `late`, `early` takes 1.25 times as long in the repetitions that both have.
     assert!(finding.contains("is that of late: 1.000 times serial"), "{finding}");
-    assert!(finding.contains("take longer (ratio of times, interval): early (1.250"), "{finding}");
+    assert!(finding.contains("1 of 1 others take longer, early the longest: 1.250 (1.250"), "{finding}");
     assert!(svg(&blocks, "speedup").contains("Hollow:"));
     let clock = words(&blocks[blocks.len() - 2..]);
     assert!(

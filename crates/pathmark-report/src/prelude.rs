@@ -15,12 +15,13 @@ pub(crate) use crate::paired::{
 };
 pub(crate) use crate::plot::style::Look;
 pub(crate) use crate::plot::{
-    Axis, Cell, Comparison, ContactSheet, Curve, DotPlot, DotRow, LineChart, Overlay, Point, Series,
+    Axis, Cell, Comparison, ContactSheet, Curve, DotPlot, DotRow, LineChart, Overlay, Point, Series, Title,
 };
 pub(crate) use crate::results::Results;
 pub(crate) use crate::rows::{Row, gathered, group, typical, values};
 pub(crate) use crate::schedule::Schedule;
 pub(crate) use crate::table::Digits::{Decimals, Significant};
+pub(crate) use crate::titles;
 pub(crate) use crate::words::{bars, counted, in_table_order, ratio_bars, with_level};
 pub(crate) use serde::Deserialize;
 pub(crate) use std::collections::{BTreeMap, BTreeSet};

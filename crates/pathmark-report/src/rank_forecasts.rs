@@ -192,8 +192,13 @@ pub fn rank_forecast_blocks(rows: &[RankForecast], workload: &str, strategies: &
             None => series.push(Series::new(name(row), look(row), vec![point]).banded()),
         }
     }
+    let best = rows.iter().max_by(|a, b| a.speedup.value.total_cmp(&b.speedup.value));
+    let result = best.and_then(|row| {
+        let speedup = titles::told(row.speedup)?;
+        Some(format!("On {} cores {} would be {speedup} times as fast as one core", cores(row), row.rule))
+    });
     let mut chart = LineChart::new(
-        "Simulated: speedup of processes",
+        Title::new("Simulated: speedup of processes").with_result(result),
         Axis::log("cores: processes times threads"),
         Axis::log("speedup"),
         series,
@@ -204,7 +209,6 @@ pub fn rank_forecast_blocks(rows: &[RankForecast], workload: &str, strategies: &
     let caption =
         "Colour: rule; dashes: threads of a process. Simulated from the jobs of serial runs, without gathering.";
     chart.caption = format!("{caption} {band}");
-    let best = rows.iter().max_by(|a, b| a.speedup.value.total_cmp(&b.speedup.value));
     let finding = best.map(|row| {
         Block::finding(format!(
             "Simulated: on {} of {} each, {} would be {} times as fast as one core{}; gathering the film would take {:.3} ms more.",

@@ -51,10 +51,13 @@ pub(super) fn lanes(trace: &TraceFile, balance: &Balance, processors: usize) -> 
     }
 }
 
+/// The description of such a chart.
+pub(super) const TITLE: &str = "Who did what when";
+
 /// A chart of several runs below each other.
 pub(super) fn charts(schedules: Vec<Schedule>, subtitle: String) -> GanttChart {
     GanttChart {
-        title: "Who did what when".to_string(),
+        title: TITLE.into(),
         subtitle,
         caption: "White is waiting; a frame ends at the makespan.".to_string(),
         label: "milliseconds of the job".to_string(),

@@ -24,9 +24,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let of_one_image = images.rev().max_by_key(spp_of).unwrap_or_default();
     let samples = places(of_one_image, |row| u64::from(row.spp));
     let mut blocks = Vec::new();
-    blocks.extend(against_primitives(results, &sizes, &accelerators));
     let hierarchies = || accelerators.iter().copied().filter(|(_, name)| *name != yardstick);
     let mut of_sizes = gains(&sizes, &yardstick, results.stopping())?;
+    blocks.extend(against_primitives(results, &sizes, &accelerators, fastest(&of_sizes)));
     for (_, name) in hierarchies() {
         blocks.extend(crossover(name, &of_sizes.remove(name).unwrap_or_default()));
     }
@@ -60,7 +60,23 @@ fn any_accelerator(_: &mut ImageKey, schedule: &mut ScheduleKey) {
     schedule.effects.clear();
 }
 
-fn against_primitives(results: &Results, sizes: &Places<'_>, accelerators: &[(usize, &str)]) -> Option<Block> {
+/// The result in a line: the accelerator with the largest gain in the largest scene.
+fn fastest(of_sizes: &BTreeMap<&str, Gains>) -> Option<String> {
+    let ranked = of_sizes.iter().flat_map(|(name, gains)| {
+        gains.iter().filter(|(_, gain)| !gain.is_partial).map(move |(count, gain)| (*name, *count, *gain))
+    });
+    let most = ranked.clone().map(|(_, count, _)| count).max()?;
+    let largest = ranked.filter(|(_, count, _)| *count == most).map(|(name, _, gain)| (name, gain));
+    let (name, gain) = titles::largest_above_1(largest)?;
+    Some(format!("At {most} spheres, {name} is {} times as fast as testing every sphere", titles::told(gain)?))
+}
+
+fn against_primitives(
+    results: &Results,
+    sizes: &Places<'_>,
+    accelerators: &[(usize, &str)],
+    result: Option<String>,
+) -> Option<Block> {
     let first = sizes.values().next()?.values().next()?.first()?;
     let cells = sizes.iter().flat_map(|(count, by_name)| {
         let cell = |(name, rows): (&&'_ str, &Vec<&Row>)| {
@@ -74,7 +90,8 @@ fn against_primitives(results: &Results, sizes: &Places<'_>, accelerators: &[(us
         Series::new(*name, Look::nth(*place), own.map(|((count, _), time)| time.above(*count as f64)).collect())
     });
     let (x, y) = (Axis::log("spheres"), Axis::log("nanoseconds per ray"));
-    let mut chart = LineChart::new("Time per ray against the number of spheres", x, y, series.collect());
+    let title = Title::new("Time per ray against the number of spheres").with_result(result);
+    let mut chart = LineChart::new(title, x, y, series.collect());
     chart.subtitle = format!("balls filling the same share of a cube, {}", results.run.machine.line());
     let bars = bars(times.iter().map(|(_, time)| *time));
     chart.caption = format!("Repetitions of {}, shading and all. {bars}", first.estimator);
@@ -130,8 +147,12 @@ fn against_spp(results: &Results, samples: &Places<'_>, gains: &[(usize, &str, G
     let series = gains
         .iter()
         .map(|(place, name, gains)| Series::new(*name, Look::nth(*place), gains.iter().map(point).collect()));
+    let largest = gains.iter().flat_map(|(_, name, gains)| gains.iter().map(move |(_, gain)| (*name, *gain)));
+    let result = titles::largest_above_1(largest).and_then(|(name, gain)| {
+        Some(format!("{name} renders up to {} times as fast as without a hierarchy", titles::told(gain)?))
+    });
     let mut chart = LineChart::new(
-        "Gain of a hierarchy against samples per pixel",
+        Title::new("Gain of a hierarchy against samples per pixel").with_result(result),
         Axis::log("samples per pixel").ticks_at(samples.keys().map(|spp| *spp as f64)),
         Axis::linear("time without / time with").including([1.0]),
         series.collect(),

@@ -43,8 +43,12 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut all: Vec<Against<'_>> = all.map(|((own, baseline), speedup)| Against { own, baseline, speedup }).collect();
     all.sort_by(|a, b| a.speedup.falling(&b.speedup));
     let dots = all.iter().map(|a| DotRow::new(a.name(), vec![Some(Estimated::from(a.speedup).dot())])).collect();
-    let mut plot =
-        DotPlot::new("One schedule against several baselines", Axis::linear("speedup").including([1.0, 2.1]), dots);
+    let ends = titles::ends_apart(all.iter().map(|against| ((), Estimated::from(against.speedup))));
+    let result = ends.map(|[((), least), ((), most)]| {
+        format!("The baseline alone changes the speedup from {:.2} to {:.2}", least.value, most.value)
+    });
+    let title = Title::new("One schedule against several baselines").with_result(result);
+    let mut plot = DotPlot::new(title, Axis::linear("speedup").including([1.0, 2.1]), dots);
     let workers = all.iter().map(Against::workers).collect::<BTreeSet<_>>().into_iter();
     plot.guides = workers.map(|workers| (workers as f64, format!("{workers} workers"))).collect();
     plot.subtitle = results.workload();

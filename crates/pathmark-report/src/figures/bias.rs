@@ -72,16 +72,16 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         *spp = cost.spp.max(*spp);
     }
     let shown = Shown { results, name, usual: &usual, values: &values, most: &most, costs: &costs };
-    let mut blocks = vec![Block::figure("bias", shown.light())];
-    let meaning = "A firefly is brighter than the reference by more than 1, the display's white, in a channel.";
-    blocks.extend(shown.share("fireflies", ["Fireflies", "fireflies", meaning], |cost| cost.fireflies));
-    let (axis, meaning) = (format!("black pixels less those with {usual}"), "In a black pixel every channel is 0.");
-    blocks.extend(shown.share("black-pixels", ["Black pixels", &axis, meaning], |cost| cost.more_black));
     let is_shown = |cost: &&Cost| cost.value != usual && Some(&cost.spp) == most.get(cost.scene.as_str());
     let worst = costs.iter().filter(is_shown).max_by(|a, b| {
         let off = |cost: &Cost| (cost.light.value - 1.0).abs();
         off(a).total_cmp(&off(b))
     });
+    let mut blocks = vec![Block::figure("bias", shown.light(worst))];
+    let meaning = "A firefly is brighter than the reference by more than 1, the display's white, in a channel.";
+    blocks.extend(shown.share("fireflies", ["Fireflies", "fireflies", meaning], |cost| cost.fireflies));
+    let (axis, meaning) = (format!("black pixels less those with {usual}"), "In a black pixel every channel is 0.");
+    blocks.extend(shown.share("black-pixels", ["Black pixels", &axis, meaning], |cost| cost.more_black));
     let finding = worst.map(|cost| {
         Block::finding(format!(
             "At {} samples per pixel the light changes most with {name} {} on {}: to {:.2} % of what it is with {usual}{}.",
@@ -133,7 +133,7 @@ impl Shown<'_> {
 
     /// The change of the light in percent. Its axis is logarithmic, so that a hundredth of a percent and half of the
     /// light both have a place; lighter and darker are groups of their own.
-    fn light(&self) -> DotPlot {
+    fn light(&self, worst: Option<&Cost>) -> DotPlot {
         let several = self.most.len() > 1;
         let groups = self.most.keys().flat_map(|scene| ["lighter", "darker"].map(|side| (*scene, side)));
         let groups: Vec<(&str, &str)> = groups.collect();
@@ -162,8 +162,17 @@ impl Shown<'_> {
         let axis = Axis::log(format!("{subject} against {}, %", self.usual));
         let names =
             groups.iter().map(|(scene, side)| if several { format!("{scene}, {side}") } else { (*side).to_string() });
-        let mut plot =
-            DotPlot::new(format!("Light by {}", self.name), axis, others().map(row).collect()).grouped(names);
+        let certain = worst.filter(|cost| cost.light.interval.is_some_and(|interval| !interval.contains(1.0)));
+        let result = certain.map(|cost| {
+            let side = if cost.light.value < 1.0 { "darker" } else { "lighter" };
+            let share = titles::percent((cost.light.value - 1.0).abs());
+            format!("{} is {share} {side} with {} {}", cost.scene, self.name, cost.value)
+        });
+        let is_open = |cost: &Cost| cost.light.interval.is_some_and(|interval| interval.contains(1.0));
+        let nothing = || format!("No {} changes the light beyond the noise", self.name);
+        let result = result.or_else(|| self.costs.iter().all(is_open).then(nothing));
+        let title = Title::new(format!("Light by {}", self.name)).with_result(result);
+        let mut plot = DotPlot::new(title, axis, others().map(row).collect()).grouped(names);
         plot.subtitle = self.results.workload();
         plot.caption = format!(
             "Bars: 95 % interval over seeds, of ratios within a seed. Hollow: the interval contains no change. No dot: less than {ROUNDING} %. Each scene at {}.",

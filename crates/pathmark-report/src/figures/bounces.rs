@@ -31,15 +31,23 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let points = steps.iter().map(|step| (&step.name, y(step))).filter(|(_, point)| point.y > 0.0);
         Series::by_name(gathered(points))
     };
+    let range = |limit: u16, value: fn(&Step) -> f64| {
+        let mut own: Vec<f64> = steps.iter().filter(|step| step.limit == limit).map(value).collect();
+        own.sort_by(f64::total_cmp);
+        let [least, most] = [own.first()?, own.last()?].map(|share| titles::percent(*share));
+        Some(if least == most { most } else { format!("{least} to {most}") })
+    };
+    let direct = range(1, |step| step.up_to).map(|share| format!("{share} of the light makes at most one bounce"));
+    let longer = range(6, |step| step.cut).map(|share| format!("{share} of the paths are longer than six bounces"));
     let mut light = LineChart::new(
-        "Light by the number of its bounces",
+        Title::new("Light by the number of its bounces").with_result(direct),
         Axis::linear("bounces"),
         Axis::log("share of all light, %"),
         lines(|step| step.light.times(100.0).above(f64::from(step.limit))),
     );
     light.caption = "Bars: 95 % interval over seeds. Light without a bounce is the lamp as it is seen.".to_string();
     let mut paths = LineChart::new(
-        "Paths that are longer than a limit",
+        Title::new("Paths that are longer than a limit").with_result(longer),
         Axis::linear("bounces"),
         Axis::log("share of paths, %"),
         lines(|step| Point::new(f64::from(step.limit), 100.0 * step.cut)),

@@ -55,8 +55,13 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let points = prototype.bias.iter().map(|&(spp, bias)| Point::new(f64::from(spp), bias)).collect();
         Series::new(&prototype.name, Look::nth(1), points).scattered()
     }));
+    let first = losses.first().and_then(|loss| Some((loss.spp, loss.lost, loss.lost.interval?)));
+    let result = first.filter(|(.., interval)| interval.high < 0.0).map(|(spp, lost, _)| {
+        let darker = titles::percent(-lost.value / 100.0);
+        format!("Clamped at {spp} samples per pixel, the image is {darker} darker than at {largest}")
+    });
     let mut chart = LineChart::new(
-        "Light lost by clamping each subpixel before averaging",
+        Title::new("Light lost by clamping each subpixel before averaging").with_result(result),
         Axis::log("samples per pixel").ticks_at(losses.iter().map(|loss| f64::from(loss.spp))),
         Axis::linear("mean radiance against the clamped limit, %").including([0.0]),
         series,

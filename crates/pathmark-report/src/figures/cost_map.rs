@@ -27,9 +27,12 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let tiles: Vec<Tile> = trace.rows.iter().enumerate().map(tile).collect();
     let costs = tiles.iter().map(|tile| tile.value);
     let (least, most) = (costs.clone().fold(f64::INFINITY, f64::min), costs.fold(0.0, f64::max));
+    // A single run may have been disturbed.
+    let result =
+        (traces.len() > 1).then(|| format!("The dearest tile takes {:.1} times as long as the cheapest", most / least));
     let name = joined([results.series_name(record), format!("{}, {} spp", record.decomposition, record.spp)]);
     let map = HeatMap {
-        title: "What a tile costs".to_string(),
+        title: Title::new("What a tile costs").with_result(result),
         subtitle: results.workload(),
         caption: format!("Of each tile the least time of {}.", counted(traces.len(), "serial run")),
         label: "milliseconds per tile".to_string(),

@@ -4,6 +4,7 @@
 use super::effect_steps;
 use crate::prelude::*;
 use crate::scene::PROFILES;
+use crate::titles::Sides;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]
@@ -153,7 +154,8 @@ fn prices(
         rows.push(DotRow::new(&found.price.effect, vec![unused.map(dot), Some(dot(found.used.1))]));
     }
     let axis = Axis::linear("processor time of a sample / without the effect").including([0.95, 1.05]);
-    let mut plot = DotPlot::new(format!("The price of an effect, kernel {kernel}"), axis, rows);
+    let title = Title::new(format!("The price of an effect, kernel {kernel}")).with_result(result(&found));
+    let mut plot = DotPlot::new(title, axis, rows);
     plot = plot.grouped(["compiled in, unused", "used"]);
     plot.guides = vec![(1.0, "absent".to_string())];
     plot.subtitle = machine(results);
@@ -180,15 +182,30 @@ fn prices(
     [Block::figure(stem, plot)].into_iter().chain(findings).chain([table]).collect()
 }
 
+/// The result in a line: the dearest effect that is compiled in but not used, or the most that one may cost.
+fn result(found: &[Priced<'_>]) -> Option<String> {
+    let ratios = || found.iter().filter_map(|found| Some((found.price.effect.as_str(), found.unused_ratio()?)));
+    if let Some((effect, Ratio { value, interval, .. })) = titles::largest_above_1(ratios()) {
+        let [value, low, high] = [value, interval.low, interval.high].map(|ratio| titles::percent(ratio - 1.0));
+        return Some(format!("An unused effect costs up to {value} ({low} to {high}): {effect}"));
+    }
+    let most = ratios().map(|(_, ratio)| ratio.interval.high - 1.0).reduce(f64::max)?;
+    let share = titles::percent(most);
+    Some(if 100.0 * most <= 2.0 * MOST_PERCENT {
+        format!("An unused effect costs at most {share}")
+    } else {
+        format!("This machine cannot tell the price of an unused effect: it is at most {share}")
+    })
+}
+
 fn generality(found: &[Priced<'_>], stem: &'static str) -> Option<[Block; 2]> {
     let ratios = || found.iter().filter_map(|found| Some((found.price.effect.as_str(), found.unused_ratio()?)));
     let ranked = ratios().filter(|(_, ratio)| !ratio.is_partial);
     let (dearest, ratio) = ranked.max_by(|a, b| a.1.value.total_cmp(&b.1.value))?;
-    let beyond: Vec<&str> = ratios().filter(|(_, ratio)| ratio.interval.low > 1.0).map(|(effect, _)| effect).collect();
-    let verdict = if beyond.is_empty() {
-        "None of them costs more than the noise".to_string()
-    } else {
-        format!("These cost more than the noise: {}", beyond.join("; "))
+    let sides = Sides::of(ratios().map(|(_, ratio)| ratio));
+    let verdict = match sides.above {
+        0 => "None of them costs more than the noise".to_string(),
+        above => format!("{above} of {} cost more than the noise", sides.count()),
     };
     let percent = Estimated::from(ratio).times(100.0);
     let (low, high) = percent.bar().unwrap_or_default();
@@ -255,7 +272,18 @@ fn scenes(results: &Results, largest: &str) -> Vec<Block> {
     });
     let axis =
         Axis::linear("processor time with every effect compiled in / with the fitting profile").including([0.95, 1.1]);
-    let mut plot = DotPlot::new("What a fitting profile gains", axis, rows.collect());
+    let sides = Sides::of(fits.iter().map(|fit| fit.ratio));
+    let result = match sides.above {
+        0 => "No scene gains from the profile that fits it beyond the noise".to_string(),
+        above if overall > 1.0 => format!(
+            "With every effect compiled in, {above} of {} scenes take longer; the median takes {}",
+            sides.count(),
+            titles::longer(overall)
+        ),
+        above => format!("With every effect compiled in, {above} of {} scenes take longer", sides.count()),
+    };
+    let title = Title::new("What a fitting profile gains").with_result(Some(result));
+    let mut plot = DotPlot::new(title, axis, rows.collect());
     plot.guides = vec![(1.0, "no gain".to_string())];
     plot.subtitle = machine(results);
     let bars = bars(fits.iter().map(|fit| fit.ratio));

@@ -1,7 +1,9 @@
 //! The cost of accuracy by estimator and sampler: error against seconds, a line for each, with a band for its interval
 //! over seeds.
 
+use super::pairs::soonest;
 use crate::contenders::{Contender, CostPoint, contenders};
+use crate::plot::number::short;
 use crate::prelude::*;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
@@ -15,7 +17,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         Series::new(&contender.name, Look::nth(index), contender.points.iter().map(point).collect()).banded()
     };
     let mut chart = LineChart::new(
-        "What accuracy costs in time, by estimator and sampler",
+        Title::new("What accuracy costs in time, by estimator and sampler").with_result(result(first)),
         Axis::log("seconds of rendering"),
         Axis::log("RMSE, linear radiance"),
         first.iter().enumerate().map(series).collect(),
@@ -24,7 +26,6 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     chart.caption =
         "Bands: 95 % interval over seeds. Along a line the samples per pixel double from point to point. Grey: slope -1/2."
             .to_string();
-    chart.named_at_ends = true;
     let start = first.first().and_then(|contender| contender.points.first()).map(|point| (point.seconds, point.rmse));
     if let Some(curve) = start.and_then(|start| Curve::power_through(start, -0.5)) {
         chart.overlays.push(Overlay::guide("slope -1/2", curve));
@@ -39,4 +40,19 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .number("variation over seeds", Decimals(3), |(_, point)| point.variation)
         .end();
     Ok(vec![Block::figure("error-against-time", chart), table])
+}
+
+/// The result in a line: the contender that reaches the least common error soonest, beside the first one.
+fn result(contenders: &[Contender]) -> Option<String> {
+    let first = contenders.first()?;
+    let (place, best, ratio) = soonest(contenders)?;
+    let rmse = short(place.rmse, 2);
+    let interval = ratio.interval;
+    Some(match (interval.low > 1.0, interval.high < 1.0) {
+        (true, _) => {
+            format!("{} is {} times as fast as {} to an RMSE of {rmse}", best.name, titles::told(ratio)?, first.name)
+        }
+        (_, true) => format!("{} reaches an RMSE of {rmse} sooner than {}, the next", first.name, best.name),
+        _ => format!("This machine cannot tell what reaches an RMSE of {rmse} first"),
+    })
 }

@@ -72,11 +72,12 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let places = dots.iter_mut().next_back().into_iter().flat_map(|row| row.dots.iter_mut().zip(&samplers));
         places.filter(|(_, sampler)| **sampler == line.sampler).for_each(|(dot, _)| *dot = Some(line.seconds.dot()));
     }
-    let plot = DotPlot::new("Time by random number generator", Axis::log("seconds"), dots);
+    let (result, finding) = compare.map_or(Ok(None), |compare| compared(results, &compare))?.unzip();
+    let title = Title::new("Time by random number generator").with_result(result.flatten());
+    let plot = DotPlot::new(title, Axis::log("seconds"), dots);
     let mut plot = plot.grouped(samplers);
     plot.subtitle = results.workload();
     plot.caption = bars(lines.iter().map(|line| line.seconds));
-    let finding = compare.map_or(Ok(None), |compare| finding(results, &compare))?;
     let table = Block::table("generators-table", "Generators: typical values over repetitions", &lines)
         .column("generator", |line| line.sampler.to_string())
         .column("samples per pixel", |line| line.rows[0].spp.to_string())
@@ -91,8 +92,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok([Block::figure("generators", plot)].into_iter().chain(finding).chain([table]).collect())
 }
 
-/// Compares two threads with one thread of the same strategy, for both generators.
-fn finding(results: &Results, Compare { shared, own }: &Compare) -> Result<Option<Block>> {
+/// Compares two threads with one thread of the same strategy, for both generators: the result in a line, and a finding.
+fn compared(results: &Results, Compare { shared, own }: &Compare) -> Result<Option<(Option<String>, Block)>> {
     let of = |sampler: &str, threads: usize| -> Vec<&Row> {
         let rows = results.rows().filter(|row| row.sampler == sampler && row.threads == threads);
         rows.filter(|row| !row.schedule.is_thread_per_row()).collect()
@@ -109,11 +110,15 @@ fn finding(results: &Results, Compare { shared, own }: &Compare) -> Result<Optio
         _ => "this run does not show the collapse beyond doubt",
     };
     let drawn = if shared == "libc-rand" { "the C library's rand()" } else { shared };
-    Ok(Some(Block::finding(format!(
+    let result = (slowed.interval.low > 1.0).then(|| {
+        format!("Two threads that share {shared} take {}, compared with one thread", titles::longer(slowed.value))
+    });
+    let finding = Block::finding(format!(
         "Two threads take {:.2} times as long as one, {}, when both draw from {drawn}, with {switches:.0} switches per second; with addressed numbers {:.2} times, {}: {verdict}.",
         slowed.value,
         with_level(&slowed.interval, 2),
         free.value,
         with_level(&free.interval, 2),
-    ))))
+    ));
+    Ok(Some((result, finding)))
 }

@@ -1,9 +1,12 @@
 //! Efficiency against the size of a job, the size at which half is lost (METG), and the overhead of a job.
 
 use crate::analysis::metg::{Grain, HALF, Metg, metg};
+use crate::measure::SERIAL;
 use crate::plot::Panels;
+use crate::plot::number::short;
 use crate::prelude::*;
 use crate::serial::Serial;
+use crate::titles::Sides;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
@@ -72,8 +75,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let grain = |(job_s, values): (f64, Vec<f64>)| -> Grain { (job_s, values) };
     let grains: BTreeMap<String, Vec<Grain>> =
         grains.into_iter().map(|(name, own)| (name, in_common(own).into_iter().map(grain).collect())).collect();
-    let panels = panels(results, &series, &caption);
-    let smallest = grains.iter().map(|(strategy, grains)| (strategy, in_words(&metg(grains, HALF, LEVEL))));
+    let found: Vec<(&String, Metg)> =
+        grains.iter().map(|(strategy, grains)| (strategy, metg(grains, HALF, LEVEL))).collect();
+    let panels = panels(results, &series, &caption, result(&found));
+    let smallest = found.iter().map(|(strategy, found)| (*strategy, in_words(found)));
     let table = Block::table("metg", "Smallest job that keeps half of the processors", smallest)
         .column("strategy", |(strategy, _)| (*strategy).clone())
         .column("METG(50 %), microseconds", |(_, [value, _])| value.clone())
@@ -87,8 +92,38 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(blocks)
 }
 
+/// The result in a line: the strategies that need the smallest and the largest jobs, if their intervals are disjoint.
+fn result(found: &[(&String, Metg)]) -> Option<String> {
+    let ends = |found: &Metg| match found {
+        Metg::Value { interval, .. } => interval.map(|interval| [interval.low, interval.high]),
+        Metg::Below(least) => Some([0.0, *least]),
+        Metg::Above(most) => Some([*most, f64::INFINITY]),
+        Metg::Undefined(_) => None,
+    };
+    let size = |found: &Metg| match found {
+        Metg::Value { seconds, .. } => format!("{} µs", short(seconds * 1e6, 2)),
+        Metg::Below(least) => format!("less than {} µs", short(least * 1e6, 2)),
+        Metg::Above(most) => format!("more than {} µs", short(most * 1e6, 2)),
+        Metg::Undefined(_) => String::new(),
+    };
+    let parallel = found.iter().filter(|(name, _)| !is_serial(name));
+    let known: Vec<(&str, &Metg, [f64; 2])> =
+        parallel.filter_map(|(name, found)| Some((name.as_str(), found, ends(found)?))).collect();
+    let (best, small, [_, high]) = known.iter().min_by(|a, b| a.2[1].total_cmp(&b.2[1]))?;
+    let (worst, large, [low, _]) = known.iter().max_by(|a, b| a.2[0].total_cmp(&b.2[0]))?;
+    let (small, large) = (size(small), size(large));
+    if known.len() == 1 {
+        return Some(format!("With {best}, jobs of {small} use half of the processors"));
+    }
+    Some(if high < low {
+        format!("With {best}, jobs of {small} use half of the processors; {worst} needs {large}")
+    } else {
+        "This machine cannot tell which strategy keeps up with the smallest jobs".to_string()
+    })
+}
+
 /// All strategies in one chart, without intervals, and each in a small one with its intervals.
-fn panels(results: &Results, series: &[Series], caption: &str) -> Panels {
+fn panels(results: &Results, series: &[Series], caption: &str, result: Option<String>) -> Panels {
     let points = || series.iter().flat_map(|series| &series.points);
     let ends = |ends: fn(&Point) -> [f64; 2]| points().flat_map(ends).collect::<Vec<f64>>();
     let sizes = ends(|point| [point.x, point.x]);
@@ -105,7 +140,7 @@ fn panels(results: &Results, series: &[Series], caption: &str) -> Panels {
         chart
     };
     let others = if series.len() > 1 { series.iter().map(small).collect() } else { Vec::new() };
-    let title = "Efficiency against the size of a job";
+    let title = Title::new("Efficiency against the size of a job").with_result(result);
     let bare = |series: &Series| {
         let mut bare = series.clone();
         bare.points.iter_mut().for_each(|point| point.y_interval = None);
@@ -133,19 +168,13 @@ fn compared(results: &Results, first: &str, second: &str) -> Result<Vec<Block>> 
         return Ok(Vec::new());
     }
     lines.sort_by_key(|(row, _)| std::cmp::Reverse(row.jobs));
-    let told = |is_meant: fn(&Interval) -> bool| {
-        let meant = lines.iter().filter(|(_, ratio)| is_meant(&ratio.interval));
-        let each = meant.map(|(row, ratio)| {
-            let Interval { low, high, .. } = ratio.interval;
-            format!("{} ({:.2}, {low:.2} to {high:.2})", row.decomposition, ratio.value)
-        });
-        let each: Vec<String> = each.collect();
-        if each.is_empty() { "none".to_string() } else { each.join(", ") }
-    };
+    let sides = Sides::of(lines.iter().map(|(_, ratio)| *ratio));
     let finding = format!(
-        "{first} takes longer than {second} on the pieces {}; shorter on {}. On the others the two are not told apart.",
-        told(|interval| interval.low > 1.0),
-        told(|interval| interval.high < 1.0),
+        "{first} takes longer than {second} on {} of {} decompositions, and shorter on {}. On {} the two are not told apart.",
+        sides.above,
+        sides.count(),
+        sides.below,
+        sides.open,
     );
     let title = format!("Seconds of {first} over seconds of {second} on the same pieces");
     let table = Block::table("compared", title, lines)
@@ -160,6 +189,11 @@ fn compared(results: &Results, first: &str, second: &str) -> Result<Vec<Block>> 
 /// The strategy, with the image if there are several.
 fn name(results: &Results, row: &Row) -> String {
     joined([results.series_name(row), row.schedule.name.clone()])
+}
+
+/// Whether a name is that of the serial program, which hands out no jobs.
+fn is_serial(name: &str) -> bool {
+    name.split([',', ' ']).any(|word| word == SERIAL)
 }
 
 /// The size in microseconds, and its uncertainty.
@@ -191,7 +225,14 @@ fn overhead(results: &Results, baseline: &Baseline<'_>) -> Block {
     let mut extra = medians(extra, results.stopping());
     extra.sort_by(|(_, a), (_, b)| (a.is_partial).cmp(&b.is_partial).then(a.value.total_cmp(&b.value)));
     let rows = extra.iter().map(|(name, told)| DotRow::new(name, vec![Some(told.dot())])).collect();
-    let mut plot = DotPlot::new("What a job costs beside its work", Axis::log("nanoseconds per job"), rows);
+    let parallel = extra.iter().filter(|(name, _)| !is_serial(name));
+    let ends = titles::ends_apart(parallel.map(|(name, told)| (name.as_str(), *told)));
+    let result = ends.map(|[(cheap, least), (dear, most)]| {
+        let [least, most] = [least, most].map(|told| short(told.value, 2));
+        format!("A job costs {least} ns beside its work with {cheap}, {most} ns with {dear}")
+    });
+    let title = Title::new("What a job costs beside its work").with_result(result);
+    let mut plot = DotPlot::new(title, Axis::log("nanoseconds per job"), rows);
     plot.subtitle = results.workload();
     plot.caption = format!(
         "(Processors in use × time - serial work on the same pieces) / jobs, at the most jobs measured; starting threads is in it. {}",
@@ -205,6 +246,25 @@ mod tests {
     use super::*;
     use crate::measure::Record;
     use crate::tests::{results, row};
+
+    #[test]
+    fn smallest_jobs_are_ranked_only_if_their_intervals_are_disjoint() {
+        let of = |seconds: f64, low: f64, high: f64| {
+            let interval = Some(Interval { low, high, level: LEVEL });
+            Metg::Value { seconds, interval, between: (0.0, 1.0), crossings: 1 }
+        };
+        let names = ["one", "other"].map(str::to_string);
+        let told = |first: Metg, second: Metg| result(&[(&names[0], first), (&names[1], second)]).unwrap();
+        let large = || of(9e-6, 8e-6, 1e-5);
+        let apart = told(of(2e-6, 1e-6, 3e-6), large());
+        assert_eq!(apart, "With one, jobs of 2 µs use half of the processors; other needs 9 µs");
+        let below = told(large(), Metg::Below(1e-6));
+        assert_eq!(below, "With other, jobs of less than 1 µs use half of the processors; one needs 9 µs");
+        let open = told(of(2e-6, 1e-6, 8.5e-6), large());
+        assert_eq!(open, "This machine cannot tell which strategy keeps up with the smallest jobs");
+        assert_eq!(result(&[(&names[0], Metg::Undefined(""))]), None);
+        assert_eq!(result(&[(&"serial".to_string(), large())]), None);
+    }
 
     /// Work of 12 s takes 8 s on a fast core and one of half its speed: that is all of both, and three quarters of two fast ones.
     #[test]

@@ -117,6 +117,32 @@ fn finding(scene: &str, contenders: &[Contender], yardstick: &str, goal: f64) ->
     Some(Block::finding(format!("{scene}, to an RMSE of {goal}, against {of_slowest}: {}.", sentences.join(", "))))
 }
 
+/// The result in a line: how many times as fast the fastest kernel of each workload is.
+fn result<'a>(works: impl Iterator<Item = &'a [Line<'a>]>, yardstick: &str) -> Option<String> {
+    let fastest = works.filter_map(|lines| {
+        let others = lines.iter().filter(|line| line.kernel != yardstick);
+        let ratios = others.filter_map(|line| line.ratio).filter(|ratio| !ratio.is_partial);
+        ratios.max_by(|a, b| a.value.total_cmp(&b.value))
+    });
+    let mut fastest: Vec<Ratio> = fastest.collect();
+    fastest.sort_by(|a, b| a.value.total_cmp(&b.value));
+    let (least, most) = (fastest.first()?, fastest.last()?);
+    let is_faster = |ratio: &Ratio| ratio.interval.low > 1.0;
+    if !fastest.iter().any(is_faster) {
+        return Some(format!("No kernel is faster than the {yardstick} kernel beyond the noise"));
+    }
+    let factor = if fastest.len() == 1 {
+        titles::told(*most)?
+    } else if fastest.iter().all(is_faster) {
+        format!("{:.1} to {:.1}", least.value, most.value)
+    } else if !is_faster(most) {
+        return None;
+    } else {
+        format!("up to {:.1}", most.value)
+    };
+    Some(format!("The fastest kernel is {factor} times as fast as the {yardstick} kernel"))
+}
+
 /// Ratios on one thread: on several, schedules would affect them.
 fn plot(results: &Results, works: &[Vec<Line<'_>>], yardstick: &str) -> DotPlot {
     let kernels: BTreeSet<&str> = works.iter().flatten().map(|line| line.kernel.as_str()).collect();
@@ -130,6 +156,8 @@ fn plot(results: &Results, works: &[Vec<Line<'_>>], yardstick: &str) -> DotPlot 
     let axis = Axis::log(format!("samples per second / those of the {yardstick} kernel")).including([1.0]);
     let has_devices = kernels().any(|kernel| kernel.contains(DEVICE_NAME));
     let title = if has_devices { "What SIMD lanes and devices are worth" } else { "What SIMD lanes are worth" };
+    let result = result(alone().map(Vec::as_slice), yardstick);
+    let title = Title::new(title).with_result(result);
     let mut plot = DotPlot::new(title, axis, rows.collect()).grouped(kernels());
     plot.guides = vec![(1.0, format!("the {yardstick} kernel"))];
     let line = results.run.machine.line();

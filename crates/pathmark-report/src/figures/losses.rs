@@ -38,18 +38,11 @@ fn name_of(found: &[Explained], part: Part) -> &'static str {
 }
 
 fn chart(results: &Results, found: &[Explained], worst: Option<(&Explained, (Part, Estimated))>) -> StackedBars {
-    let title = match worst {
-        Some((own, (part, told))) => {
-            format!(
-                "Why not {} times? {}, loses {:.0} % ({})",
-                own.slots,
-                own.name,
-                100.0 * told.value,
-                own.name_of(part)
-            )
-        }
-        None => "Why not N times?".to_string(),
-    };
+    let certain = worst.filter(|(_, (_, told))| told.interval.is_some_and(|interval| interval.low > 0.0));
+    let result = certain.map(|(own, (part, told))| {
+        let (name, part) = (&own.name, own.name_of(part));
+        format!("Why not {} times? {name}, loses {:.0} % ({part})", own.slots, 100.0 * told.value)
+    });
     let parts: Vec<Part> = parts(found).collect();
     let part = |part: &Part| StackPart { name: name_of(found, *part).to_string(), colour: colour(*part) };
     let row = |own: &Explained| {
@@ -73,7 +66,7 @@ fn chart(results: &Results, found: &[Explained], worst: Option<(&Explained, (Par
         ""
     };
     StackedBars {
-        title,
+        title: Title::new("Why not N times? Where the time of the workers goes").with_result(result),
         subtitle: results.workload(),
         caption: format!(
             "Typical values over repetitions of shares of workers × (makespan + merge){shared}. Serial work: seconds inside jobs of the serial run \

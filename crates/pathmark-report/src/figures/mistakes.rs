@@ -98,7 +98,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let errors: Vec<&Line<'_>> = lines.iter().filter(|line| line.error.is_some()).collect();
     let mut blocks = Vec::new();
     if !times.is_empty() {
-        let title = title(&times, time, "time");
+        let title = Title::new("Time of errors on purpose").with_result(Some(result(&times, time, "time")));
         let axis = Axis::log("time / time of the right way");
         let mut plot = plot(title, axis, &times, |line| Some(Estimated::from(line.time?)));
         plot.subtitle = results.workload();
@@ -106,7 +106,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         blocks.push(Block::figure("mistakes-time", plot));
     }
     if !errors.is_empty() {
-        let title = title(&errors, |line| line.error, "error of the mean");
+        let result = result(&errors, |line| line.error, "error of the mean");
+        let title = Title::new("Error of the mean by errors on purpose").with_result(Some(result));
         let axis = Axis::log("error of the image's mean / error of the right way");
         let mut plot = plot(title, axis, &errors, |line| line.error.map(Estimated::from));
         plot.subtitle = results.workload();
@@ -131,7 +132,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 }
 
 /// The result in a line: the error that certainly costs most, if one does so beyond the noise.
-fn title(lines: &[&Line<'_>], ratio: impl Fn(&Line<'_>) -> Option<Estimate>, of: &str) -> String {
+fn result(lines: &[&Line<'_>], ratio: impl Fn(&Line<'_>) -> Option<Estimate>, of: &str) -> String {
     let beyond =
         lines.iter().filter_map(|line| Some((line, ratio(line)?))).filter(|(_, ratio)| ratio.interval.low > 1.0);
     let worst = beyond.max_by(|a, b| a.1.interval.low.total_cmp(&b.1.interval.low));
@@ -144,7 +145,7 @@ fn title(lines: &[&Line<'_>], ratio: impl Fn(&Line<'_>) -> Option<Estimate>, of:
     )
 }
 
-fn plot(title: String, axis: Axis, lines: &[&Line<'_>], told: impl Fn(&Line<'_>) -> Option<Estimated>) -> DotPlot {
+fn plot(title: Title, axis: Axis, lines: &[&Line<'_>], told: impl Fn(&Line<'_>) -> Option<Estimated>) -> DotPlot {
     let threads: BTreeSet<usize> = lines.iter().map(|line| line.threads).collect();
     let rows = lines.chunk_by(|a, b| a.mistake.name == b.mistake.name).map(|own| {
         let dot = |threads: &usize| Some(told(own.iter().find(|line| line.threads == *threads)?)?.dot());

@@ -2,6 +2,7 @@
 //! names another.
 
 use crate::prelude::*;
+use crate::titles::Sides;
 
 /// The field's yardstick.
 const OPENMP: &str = "openmp-dynamic";
@@ -23,7 +24,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         ratios.iter().map(|(schedule, ratio)| DotRow::new(&schedule.name, vec![Some(Estimated::from(*ratio).dot())]));
     let axis = Axis::linear(format!("time / time of {yardstick}")).including([0.95, 1.05]);
     let title = if yardstick == OPENMP { "OpenMP's dynamic schedule" } else { &yardstick };
-    let mut plot = DotPlot::new(format!("Time against {title}"), axis, rows.collect());
+    let result = result(&ratios, title);
+    let mut plot = DotPlot::new(Title::new(format!("Time against {title}")).with_result(result), axis, rows.collect());
     plot.guides = vec![(1.0, yardstick.clone())];
     plot.subtitle = results.workload();
     let bars = ratio_bars(ratios.iter().map(|(_, ratio)| *ratio));
@@ -39,4 +41,24 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         ))
     });
     Ok([Block::figure("openmp", plot)].into_iter().chain(finding).collect())
+}
+
+/// The result in a line, from ratios in ascending order.
+fn result(ratios: &[(&Schedule, Ratio)], title: &str) -> Option<String> {
+    let sides = Sides::of(ratios.iter().map(|(_, ratio)| *ratio));
+    let fastest = ratios.iter().find(|(_, ratio)| !ratio.is_partial && ratio.interval.high < 1.0);
+    let ties = format!("{} of {} schedules", sides.open, sides.count());
+    let slowest = titles::largest_above_1(ratios.iter().map(|(schedule, ratio)| (*schedule, *ratio)));
+    Some(match (fastest, slowest) {
+        (Some((fastest, ratio)), _) => {
+            let less = titles::percent(1.0 - ratio.value);
+            format!("{} takes {less} less time than {title}; {ties} tie with it", fastest.name)
+        }
+        (None, Some((slowest, ratio))) => {
+            let longer = titles::longer(ratio.value);
+            format!("No schedule is faster than {title}: {ties} tie with it, {} takes {longer}", slowest.name)
+        }
+        (None, None) if sides.count() == 0 => return None,
+        (None, None) => format!("This machine cannot tell {} from {title}", counted(sides.count(), "schedule")),
+    })
 }

@@ -34,8 +34,14 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let rows = lines
         .chunk_by(|a, b| a.output == b.output)
         .map(|own| DotRow::new(own[0].output, own.iter().map(dot).collect()));
+    let slowest = titles::largest_above_1(lines.iter().filter_map(|line| Some((line, line.ratio?))));
+    let result = slowest.map_or_else(
+        || format!("No output takes longer than {yardstick} beyond the noise"),
+        |(line, ratio)| format!("{} takes {} with {}", line.output, titles::longer(ratio.value), line.decomposition),
+    );
     let mut plot = DotPlot::new(
-        format!("Time by output, against {yardstick}"),
+        Title::new(format!("Time by output, against {yardstick}"))
+            .with_result(lines.iter().any(|line| line.ratio.is_some()).then_some(result)),
         Axis::linear(format!("time / time with {yardstick}")).including([0.95, 1.05]),
         rows.filter(|row| row.dots.iter().any(Option::is_some)).collect(),
     )

@@ -50,7 +50,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             by_threads.push((joined([series, schedule.name.clone()]), time.above(threads as f64)));
         }
     }
-    let chart = |title: &str, axis: Axis, lines: Lines| {
+    let (result, finding) = claim.map_or(Ok(None), |claim| compared(results, &claim))?.unzip();
+    let chart = |title: Title, axis: Axis, lines: Lines| {
         let ticks: Vec<f64> = lines.values().flatten().map(|point| point.x).collect();
         let y = Axis::linear("seconds").including([0.0]);
         let mut chart = LineChart::new(title, axis.ticks_at(ticks), y, Series::by_name(lines));
@@ -60,19 +61,19 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         chart
     };
     let (sections, threads) = (Axis::linear("sections"), Axis::log("threads"));
-    let figure = |stem: &'static str, title: &str, axis: Axis, lines: Lines| {
+    let figure = |stem: &'static str, title: Title, axis: Axis, lines: Lines| {
         (!lines.is_empty()).then(|| Block::figure(stem, chart(title, axis, lines)))
     };
-    let grid = figure("sections", "Time against sections of the image (report D)", sections, gathered(by_grid));
+    let title = Title::new("Time against sections of the image (report D)").with_result(result);
+    let grid = figure("sections", title, sections, gathered(by_grid));
     let by_threads = gathered(by_threads);
-    let threads = figure("threads", "Time against threads, the pieces being the same", threads, by_threads);
-    let finding = claim.map_or(Ok(None), |claim| finding(results, &claim))?;
+    let threads = figure("threads", "Time against threads, the pieces being the same".into(), threads, by_threads);
     Ok([grid, threads, finding].into_iter().flatten().collect())
 }
 
 /// Compares report D's "around 16 to 49 is a good number" with few sections, and with the same pieces on a thread for
-/// each processor.
-fn finding(results: &Results, claim: &Claim) -> Result<Option<Block>> {
+/// each processor: the second result in a line, and both in a finding.
+fn compared(results: &Results, claim: &Claim) -> Result<Option<(String, Block)>> {
     let Claim { per_section, few, sections: [least, most], against } = claim;
     let processors = results.run.machine.processors;
     let of = |strategy: &str| -> Vec<&Row> {
@@ -85,6 +86,17 @@ fn finding(results: &Results, claim: &Claim) -> Result<Option<Block>> {
     let seconds = |row: &Row| row.makespan_s;
     let against_sections = Partners::of(fewer, without_pieces)?.pairs(own()).costs(seconds);
     let against_few = Partners::of(few, with_pieces)?.pairs(own()).costs(seconds);
+    let of_threads = against_few.median(results.stopping()).and_then(Ratio::of).map(|ratio| {
+        let each = "A thread for each section";
+        match (ratio.interval.low > 1.0, ratio.interval.high < 1.0) {
+            (true, _) => format!("{each} takes {}, compared with one for each processor", titles::longer(ratio.value)),
+            (_, true) => {
+                let less = titles::percent(1.0 - ratio.value);
+                format!("{each} takes {less} less time than one for each processor")
+            }
+            _ => "This machine cannot tell a thread for each section from one for each processor".to_string(),
+        }
+    });
     let in_words = |ratios: &Repeats| {
         let Estimated { value, interval, .. } = ratios.median(results.stopping())?;
         let interval = interval?;
@@ -96,10 +108,11 @@ fn finding(results: &Results, claim: &Claim) -> Result<Option<Block>> {
         Some(format!("{value:.2} times as long, {} ({verdict})", with_level(&interval, 2)))
     };
     let Some((sections, few)) = in_words(&against_sections).zip(in_words(&against_few)) else { return Ok(None) };
-    Ok(Some(Block::finding(format!(
+    let finding = Block::finding(format!(
         "A thread for each of {least} to {most} sections takes, against one for each of {} sections, {sections}; against a thread for each of the {} processors on the same {least} to {most} sections, {few}. \
          The first is what report D saw; the second is what its threads, apart from the smaller pieces, gain or cost.",
         against.trim_start_matches(GRID),
         processors,
-    ))))
+    ));
+    Ok(of_threads.map(|result| (result, finding)))
 }

@@ -49,8 +49,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 /// The error and the time at which a scene's contenders are compared: the largest final error, and the shortest final
 /// time.
 #[derive(Clone, Copy)]
-struct Place {
-    rmse: f64,
+pub(super) struct Place {
+    pub(super) rmse: f64,
     seconds: f64,
 }
 
@@ -62,12 +62,20 @@ impl Place {
     }
 }
 
-/// Compares the first contender, which is the yardstick, with the one that reaches the same error soonest.
-fn finding(scene: &str, contenders: &[Contender], place: &Place) -> Option<String> {
+/// The contender other than the first that reaches the same error soonest, and the first one's seconds over its seconds.
+pub(super) fn soonest(contenders: &[Contender]) -> Option<(Place, &Contender, Estimate)> {
+    let place = Place::of(contenders)?;
     let (first, others) = contenders.split_first()?;
     let against = |other: &Contender| equal_error(&first.renderer, &other.renderer, place.rmse);
     let ratios = others.iter().filter_map(|other| Some((other, against(other)?)));
     let (best, ratio) = ratios.max_by(|a, b| a.1.value.total_cmp(&b.1.value))?;
+    Some((place, best, ratio))
+}
+
+/// Compares the first contender, which is the yardstick, with the one that reaches the same error soonest.
+fn finding(scene: &str, contenders: &[Contender], place: &Place) -> Option<String> {
+    let first = contenders.first()?;
+    let (_, best, ratio) = soonest(contenders)?;
     let less = first.variance()? / best.variance()?;
     let slower = best.renderer.seconds_per_spp.value / first.renderer.seconds_per_spp.value;
     Some(format!(

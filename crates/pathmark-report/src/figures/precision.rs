@@ -3,6 +3,7 @@
 use super::kernels::any_kernel;
 use crate::analysis::mean::t_interval;
 use crate::contenders::root_of_mean;
+use crate::plot::number::short;
 use crate::prelude::*;
 
 const DOUBLE: &str = "f64";
@@ -46,7 +47,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .filter_map(|pair| Some(DotRow::new(&pair.name, vec![Some(Estimated::from(pair.light?).times(1e4).dot())])));
     let axis =
         Axis::linear("light of single precision over that of double, less 1, in ten-thousandths").including([0.0]);
-    let mut plot = DotPlot::new("Is single precision darker or lighter?", axis, dots.collect());
+    let title = Title::new("Is single precision darker or lighter?").with_result(result(&pairs));
+    let mut plot = DotPlot::new(title, axis, dots.collect());
     plot.guides = vec![(0.0, "as light".to_string())];
     plot.subtitle = results.run.machine.line();
     plot.caption =
@@ -67,4 +69,11 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("invalid samples, single", |pair| sum(&pair.single, |row| row.invalid_samples))
         .end();
     Ok(vec![Block::figure("precision", plot), table])
+}
+
+/// The result in a line: a bound that the intervals of all pairs share.
+fn result(pairs: &[Pair<'_>]) -> Option<String> {
+    let ends = pairs.iter().filter_map(|pair| pair.light).flat_map(|light| [light.interval.low, light.interval.high]);
+    let most = ends.map(f64::abs).reduce(f64::max)?;
+    Some(format!("Single precision changes the light by at most {} ten-thousandths", short(1e4 * most, 2)))
 }

@@ -31,7 +31,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         goals.iter().map(dot).collect()
     };
     let rows = all.iter().map(|contender| DotRow::new(name(contender), dots(contender))).collect();
-    let plot = DotPlot::new("What each accuracy costs", Axis::log("seconds of rendering"), rows);
+    let title = Title::new("What each accuracy costs").with_result(result(&scenes, &goals));
+    let plot = DotPlot::new(title, Axis::log("seconds of rendering"), rows);
     let mut plot = plot.grouped(goals.iter().map(|goal| format!("RMSE {}", goal.0)));
     plot.subtitle = results.workload();
     plot.caption = format!("Bars: 95 % interval of error and time together. {}", extrapolated(&all, &goals));
@@ -58,6 +59,31 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .number("seconds, measured / predicted", Decimals(3), |(_, found)| found.as_ref().map(|check| check.seconds));
     blocks.push(table.end());
     Ok(blocks)
+}
+
+/// The result in a line, in the scene with the most contenders: the cheapest and the dearest at the error that most of
+/// them reach.
+fn result(scenes: &BTreeMap<String, Vec<Contender>>, goals: &[Positive]) -> Option<String> {
+    let (scene, all) = scenes.iter().rev().max_by_key(|(_, contenders)| contenders.len())?;
+    let priced = |goal: f64| -> Vec<(&str, Estimated)> {
+        let reached = all.iter().filter(|contender| !is_beyond(contender, goal));
+        let price = |own: &Contender| Some(Estimated::from(own.renderer.price(goal)?.seconds));
+        reached.filter_map(|own| Some((own.name.as_str(), price(own)?))).collect()
+    };
+    let goals = goals.iter().map(|goal| (goal.0, priced(goal.0)));
+    let (goal, found) = goals.max_by(|a, b| a.1.len().cmp(&b.1.len()).then(b.0.total_cmp(&a.0)))?;
+    if found.len() < 2 {
+        return None;
+    }
+    let of = if scenes.len() > 1 { format!(" on {scene}") } else { String::new() };
+    Some(match titles::ends_apart(found) {
+        Some([(cheap, least), (dear, most)]) => format!(
+            "An RMSE of {goal}{of} costs {} s with {cheap}, {} s with {dear}",
+            titles::told(least)?,
+            titles::told(most)?
+        ),
+        None => format!("This machine cannot tell what reaches an RMSE of {goal}{of} first"),
+    })
 }
 
 /// The RMSE at the largest number of samples.

@@ -2,7 +2,7 @@
 
 use crate::analysis::jackknife::SeedCurves;
 use crate::analysis::mse::over_seeds;
-use crate::analysis::slope::power_law;
+use crate::analysis::slope::{PowerLaw, power_law};
 use crate::contenders::{curves_by, one_per_seed, root_of_mean};
 use crate::prelude::*;
 
@@ -69,7 +69,7 @@ struct Line {
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Options { values } = options(&results.definition, "rmse-against-spp")?;
-    let (mut series, mut overlays, mut findings, mut lines) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut series, mut overlays, mut slopes, mut lines) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (index, (name, rows)) in results.by(|row| results.image_name(row)).into_iter().enumerate() {
         let at_spp = group(rows.iter().copied(), |row| row.spp).into_iter().filter_map(|(spp, rows)| {
             let mse = one_per_seed(&rows, values.mse());
@@ -82,27 +82,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let curves: Vec<_> = curves_by(&rows, values.mse()).into_iter().map(|(curve, _)| curve).collect();
         let fit = SeedCurves::of_errors(&curves).and_then(|curves| power_law(&curves, LEVEL));
         if let Some(fit) = fit.filter(|_| own.len() >= FEWEST_POINTS) {
-            let (slope, interval) = (fit.exponent.value, fit.exponent.interval);
+            let slope = fit.exponent.value;
             let curve = Curve::Power { scale: libm::exp(fit.log_scale), exponent: slope };
-            let seeds = counted(fit.seeds, "seed");
-            let label = format!("fit: slope {slope:.3}, {seeds}\n95 % {:.3} to {:.3}", interval.low, interval.high);
-            overlays.push(Overlay::fit(label, curve, index));
-            let verdict = if interval.contains(-0.5) { "contains" } else { "does not contain" };
-            findings.push(Block::finding(format!(
-                "{name}: RMSE falls as spp to the power {slope:.3}; the 95 % interval over {} seeds, {:.3} to {:.3}, {verdict} -1/2. \
-                 Half the error therefore takes {:.2} times the samples ({:.2} to {:.2}).",
-                fit.seeds,
-                interval.low,
-                interval.high,
-                libm::pow(0.5, 1.0 / slope),
-                libm::pow(0.5, 1.0 / interval.low),
-                libm::pow(0.5, 1.0 / interval.high),
-            )));
-            if fit.lacks_fit() {
-                findings.push(Block::finding(format!(
-                    "{name}: the points do not lie on a line (the exponent changes along it by more than its interval), so no one exponent describes them."
-                )));
-            }
+            overlays.push(Overlay::fit(format!("fit: slope {slope:.3}"), curve, index));
+            slopes.push((name.clone(), fit));
         }
         let points = own.iter().map(|line| line.error.above(f64::from(line.spp))).collect();
         series.push(Series::new(name, Look::nth(index), points).scattered());
@@ -112,8 +95,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     if let Some(curve) = first.and_then(|point| Curve::power_through(point, -0.5)) {
         overlays.insert(0, Overlay::guide("slope -1/2", curve));
     }
+    let steepest = slopes.iter().min_by(|a, b| a.1.exponent.value.total_cmp(&b.1.exponent.value));
     let mut chart = LineChart::new(
-        "Error against samples per pixel",
+        Title::new("Error against samples per pixel").with_result(result(&slopes)),
         Axis::log("samples per pixel").ticks_at(results.rows().map(|row| f64::from(row.spp))),
         Axis::log(values.axis()),
         series,
@@ -130,5 +114,78 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .estimated(values.heading(), Decimals(5), |line| line.error)
         .number(values.other().heading(), Decimals(5), |line| line.other)
         .end();
-    Ok([Block::figure("rmse-against-spp", chart)].into_iter().chain(findings).chain([table]).collect())
+    let findings = steepest.iter().map(|own| steepest_finding(own, slopes.len())).chain(bent(&slopes));
+    let fits = (!slopes.is_empty()).then(|| fits(&slopes));
+    Ok([Block::figure("rmse-against-spp", chart)].into_iter().chain(findings).chain(fits).chain([table]).collect())
+}
+
+/// The name of a curve and its fitted power law.
+type Slope = (String, PowerLaw);
+
+/// The exponent of independent samples.
+const INDEPENDENT: f64 = -0.5;
+
+/// The result in a line: the curve that falls fastest, if one falls faster than independent samples do.
+fn result(slopes: &[Slope]) -> Option<String> {
+    let of = |is_meant: fn(&Interval) -> bool| slopes.iter().filter(move |(_, fit)| is_meant(&fit.exponent.interval));
+    let falls = |(name, fit): &Slope, how: &str| {
+        let with = if slopes.len() > 1 { format!(" with {name}") } else { String::new() };
+        format!("The error falls {how}{with}: as samples to the power {:.2}, not -1/2", fit.exponent.value)
+    };
+    let faster = of(|interval| interval.high < INDEPENDENT);
+    let slower = of(|interval| interval.low > INDEPENDENT);
+    let steepest = faster.min_by(|a, b| a.1.exponent.value.total_cmp(&b.1.exponent.value));
+    let flattest = slower.max_by(|a, b| a.1.exponent.value.total_cmp(&b.1.exponent.value));
+    if slopes.is_empty() {
+        return None;
+    }
+    Some(match (steepest, flattest) {
+        (Some(own), _) if slopes.len() > 1 => falls(own, "fastest"),
+        (Some(own), _) => falls(own, "faster"),
+        (None, Some(own)) => falls(own, "more slowly"),
+        (None, None) => "Half the error takes four times the samples: no slope is told apart from -1/2".to_string(),
+    })
+}
+
+/// A finding about the steepest of some curves.
+fn steepest_finding((name, fit): &Slope, count: usize) -> Block {
+    let (slope, interval) = (fit.exponent.value, fit.exponent.interval);
+    let verdict = if interval.contains(INDEPENDENT) { "contains" } else { "does not contain" };
+    let of_all = if count > 1 { format!(", the steepest of {count}") } else { String::new() };
+    Block::finding(format!(
+        "{name}{of_all}: RMSE falls as spp to the power {slope:.3}; the 95 % interval over {} seeds, {:.3} to {:.3}, {verdict} -1/2. \
+         Halving the error takes {:.2} times the samples ({:.2} to {:.2}).",
+        fit.seeds,
+        interval.low,
+        interval.high,
+        samples_for_half(slope),
+        samples_for_half(interval.low),
+        samples_for_half(interval.high),
+    ))
+}
+
+fn samples_for_half(exponent: f64) -> f64 {
+    libm::pow(0.5, 1.0 / exponent)
+}
+
+/// A finding about curves that are no lines.
+fn bent(slopes: &[Slope]) -> Option<Block> {
+    let count = slopes.iter().filter(|(_, fit)| fit.lacks_fit()).count();
+    (count > 0).then(|| {
+        Block::finding(format!(
+            "The points of {count} of {} curves do not lie on a line (the exponent changes along it by more than its interval), so no one exponent describes them.",
+            slopes.len()
+        ))
+    })
+}
+
+fn fits(slopes: &[Slope]) -> Block {
+    let remark = |fit: &PowerLaw| if fit.lacks_fit() { "the points do not lie on a line" } else { "" };
+    Block::table("rmse-slopes", "Power of the samples with which the error falls", slopes)
+        .column("image", |(name, _)| name.clone())
+        .estimated("exponent", Decimals(3), |(_, fit)| Estimated::from(fit.exponent))
+        .number("times the samples for half the error", Decimals(2), |(_, fit)| samples_for_half(fit.exponent.value))
+        .column("seeds", |(_, fit)| fit.seeds.to_string())
+        .column("remark", |(_, fit)| remark(fit).to_string())
+        .end()
 }

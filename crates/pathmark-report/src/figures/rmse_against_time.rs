@@ -18,9 +18,6 @@ pub(super) struct Options {
     goals: Option<Vec<Positive>>,
 }
 
-/// Lines of more names than this have a legend.
-const MOST_NAMES: usize = 10;
-
 /// Scene and size: times in others are not compared with its times.
 type Setting<'a> = (&'a str, u32, u32);
 
@@ -148,8 +145,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let seeds = lines.iter().flat_map(|line| line.points.iter().filter_map(|point| point.rmse.count));
     let seeds: BTreeSet<usize> = seeds.collect();
     let seeds = seeds.first().map_or_else(String::new, |least| counted(*least, "seed"));
-    let mut first = LineChart {
-        title: title(shown),
+    let first = LineChart {
+        title: Title::new("Error against seconds, a line for each schedule").with_result(result(shown)),
         subtitle: format!("{}, {}x{}, {}", main.0, main.1, main.2, results.run.machine.line()),
         caption: format!(
             "Numbers beside points: samples per pixel. Vertical: RMSE over seeds, at least {seeds}, 95 % confidence. Horizontal: time over processes. {}",
@@ -158,10 +155,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         words: slowest(shown),
         ..chart(shown)
     };
-    first.named_at_ends = first.series.len() <= MOST_NAMES;
     let others = by_setting.iter().filter(|(setting, _)| *setting != main);
     let others = others.map(|((scene, width, height), lines)| LineChart {
-        title: format!("{scene}, {width}x{height}"),
+        title: format!("{scene}, {width}x{height}").into(),
         ..chart(lines)
     });
     let others: Vec<LineChart> = others.collect();
@@ -175,17 +171,17 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 }
 
 /// The result in the scene with the most lines: the factor on the seconds that halves the error.
-fn title(lines: &[&Line<'_>]) -> String {
+fn result(lines: &[&Line<'_>]) -> Option<String> {
     let mut factors: Vec<f64> = lines.iter().filter_map(|line| line.cost_of_half()).collect();
     factors.sort_by(f64::total_cmp);
     let scene = lines.first().map_or("", |line| line.of.setting.0);
-    match factors.as_slice() {
-        [] => "What accuracy costs in time".to_string(),
+    Some(match factors.as_slice() {
+        [] => return None,
         [least, .., most] if format!("{least:.1}") != format!("{most:.1}") => {
             format!("Half the error costs {least:.1} to {most:.1} times the seconds: {scene}")
         }
         [factor, ..] => format!("Half the error costs {factor:.1} times the seconds: {scene}"),
-    }
+    })
 }
 
 /// Compares the prices of the smallest goal that most lines of a scene have reached.

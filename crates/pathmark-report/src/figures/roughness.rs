@@ -3,6 +3,7 @@
 //!
 //! Scenes whose names differ only in their ending are the same image, with directions sampled in another way.
 
+use crate::plot::number::short;
 use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
@@ -67,7 +68,15 @@ fn plot(results: &Results, compared: &[(&str, Estimated, Estimated)]) -> DotPlot
         .iter()
         .map(|(scene, variance, time)| DotRow::new(*scene, vec![Some(variance.dot()), Some(time.dot())]));
     let axis = Axis::log("by cosine (the report's way) / by facets, at equal samples").including([0.9, 1.1]);
-    let plot = DotPlot::new("What directions by the cosine cost", axis, rows.collect());
+    let errors = compared.iter().filter_map(|(scene, variance, _)| Some((*scene, Ratio::of(*variance)?)));
+    let result = titles::largest_above_1(errors).map_or_else(
+        || "The facets leave no smaller error than the cosine beyond the noise".to_string(),
+        |(scene, ratio)| {
+            format!("On {scene} the cosine leaves {} times the squared error of the facets", short(ratio.value, 3))
+        },
+    );
+    let title = Title::new("What directions by the cosine cost").with_result(Some(result));
+    let plot = DotPlot::new(title, axis, rows.collect());
     let of =
         results.definition.object().map_or_else(|| "image".to_string(), |object| format!("pixels of the {object}"));
     let mut plot = plot.grouped([format!("squared error, {of}"), "time".to_string()]);

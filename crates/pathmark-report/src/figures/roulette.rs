@@ -35,8 +35,15 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         Some((name, gain.above(start.parse().ok()?)))
     }));
     let starts: Vec<f64> = lines.values().flatten().map(|point: &Point| point.x).collect();
+    let better = compared.iter().filter_map(|(contender, gain)| Some((*contender, Ratio::of(*gain)?)));
+    let result = match titles::largest_above_1(better) {
+        Some((best, ratio)) => {
+            titles::told(ratio).map(|times| format!("{} is {times} times as efficient as {yardstick}", best.name))
+        }
+        None => Some(format!("No rule is more efficient than {yardstick} beyond the noise")),
+    };
     let mut chart = LineChart::new(
-        "Efficiency by the start of Russian roulette",
+        Title::new("Efficiency by the start of Russian roulette").with_result(result),
         Axis::linear("vertices before roulette begins").ticks_at(starts),
         Axis::linear(format!("efficiency / that of {yardstick}")).including([1.0]),
         Series::by_name(lines),

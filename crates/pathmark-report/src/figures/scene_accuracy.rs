@@ -62,8 +62,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         return Ok(vec![Block::notice(text)]);
     }
     scenes.sort_by(|a, b| a.error.value.total_cmp(&b.error.value));
-    let mut blocks = vec![Block::figure("scene-accuracy", chart(results, &scenes))];
-    blocks.extend(claim(&scenes, control.as_ref()));
+    let correlation = correlation(&scenes, control.as_ref());
+    let mut blocks = vec![Block::figure("scene-accuracy", chart(results, &scenes, correlation.as_ref()))];
+    blocks.extend(correlation.as_ref().map(claim));
     blocks.extend(control.and_then(|control| controlled(&scenes, &control)));
     blocks.push(table(&scenes, goal.map_or(0.01, |goal| goal.0)));
     Ok(blocks)
@@ -118,23 +119,43 @@ fn setting(scene: &Accuracy) -> ImageKey {
     image
 }
 
-fn chart(results: &Results, scenes: &[Accuracy]) -> LineChart {
+fn chart(results: &Results, scenes: &[Accuracy], correlation: Option<&Correlation>) -> LineChart {
     let point = |(index, scene): (usize, &Accuracy)| {
         Series::new(&scene.name, Look::nth(index), vec![scene.error.above(scene.rays)]).scattered()
     };
     let (x, y) = (Axis::log("rays per sample"), Axis::log("RMSE / mean radiance"));
     let series = scenes.iter().enumerate().map(point).collect();
-    let mut chart = LineChart::new("Error and path length by scene", x, y, series);
+    let result = correlation.map(|found| {
+        let (words, rho) = (found.verdict(), found.rho);
+        format!("Over {} scenes, {words} (rank correlation {rho:.2})", found.scenes)
+    });
+    let mut chart = LineChart::new(Title::new("Error and path length by scene").with_result(result), x, y, series);
     let samples = |row: &Row| format!("{}, {} samples per pixel, {}", results.size(), row.spp, row.estimator);
     chart.subtitle = results.first().map_or_else(String::new, samples);
-    chart.caption =
-        "Bars: 95 % interval over seeds. The legend goes from the smallest error to the largest.".to_string();
+    chart.caption = "Bars: 95 % interval over seeds.".to_string();
     chart
+}
+
+/// The rank correlation of rays per sample and relative error.
+struct Correlation {
+    scenes: usize,
+    rho: f64,
+    p: f64,
+}
+
+impl Correlation {
+    fn verdict(&self) -> &'static str {
+        match (self.p < 1.0 - LEVEL, self.rho > 0.0) {
+            (true, true) => "longer paths and larger errors go together",
+            (true, false) => "scenes with longer paths even have the smaller errors",
+            (false, _) => "path length and error show no connection",
+        }
+    }
 }
 
 /// The rank correlation over different scenes. Leaves out the two variants of the control, which would count one scene
 /// three times.
-fn claim(scenes: &[Accuracy], control: Option<&Control>) -> Option<Block> {
+fn correlation(scenes: &[Accuracy], control: Option<&Control>) -> Option<Correlation> {
     let is_variant = |scene: &&Accuracy| {
         control.is_some_and(|control| [&control.diffuse, &control.mirrors].contains(&&scene.image.scene))
     };
@@ -142,18 +163,18 @@ fn claim(scenes: &[Accuracy], control: Option<&Control>) -> Option<Block> {
     let others = others.into_values().rev().max_by_key(Vec::len)?;
     let pairs: Vec<(f64, f64)> = others.iter().map(|scene| (scene.rays, scene.error.value)).collect();
     let found = spearman(&pairs)?;
-    let verdict = match (found.p < 1.0 - LEVEL, found.rho > 0.0) {
-        (true, true) => "longer paths and larger errors go together",
-        (true, false) => "scenes with longer paths even have the smaller errors",
-        (false, _) => "so many scenes show no connection between path length and error",
-    };
-    Some(Block::finding(format!(
+    Some(Correlation { scenes: others.len(), rho: found.rho, p: found.p })
+}
+
+fn claim(found: &Correlation) -> Block {
+    Block::finding(format!(
         "Report A says that a scene without reflections is more accurate because its paths bounce less. Over {} different scenes the rank correlation of rays per sample and \
-         relative error is {:.2} (p = {:.2}): {verdict}.",
-        others.len(),
+         relative error is {:.2} (p = {:.2}): {}.",
+        found.scenes,
         found.rho,
         found.p,
-    )))
+        found.verdict(),
+    ))
 }
 
 /// The ratio of the errors of two scenes, paired by seed: the mean of logarithms.

@@ -11,6 +11,9 @@ use crate::words::{hollow, with_interval};
 /// A chart with more lines than this is unreadable, so strategies become named rows instead.
 const MOST_LINES: usize = 8;
 
+/// More areas than this leave each too little width.
+const MOST_AREAS: usize = 4;
+
 /// The mark of schedules that are not told apart from the fastest one.
 const OPEN: &str = "≈";
 
@@ -51,6 +54,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     blocks.extend(contest.iter().flat_map(|contest| [contest.answer(), contest.finding(found.processors)]));
     blocks.extend(found.thread_per_row());
     blocks.push(found.table());
+    blocks.extend(contest.as_ref().and_then(|contest| contest.table(found.processors)));
     Ok(blocks)
 }
 
@@ -63,30 +67,89 @@ struct Contest<'a> {
     open: Vec<(&'a Schedule, Ratio)>,
 }
 
-impl Contest<'_> {
+impl<'a> Contest<'a> {
     fn finding(&self, processors: usize) -> Block {
-        let list = |others: &[(&Schedule, Ratio)]| {
-            let named = others.iter().map(|(other, ratio)| format!("{} ({})", other.name, ratio.in_words(3)));
-            if others.is_empty() { "none".to_string() } else { named.collect::<Vec<_>>().join("; ") }
+        let (slower, open) = (self.slower.len(), self.open.len());
+        let others = match self.slowest() {
+            Some((slowest, ratio)) => format!(
+                " Paired with it, {slower} of {} others take longer, {} the longest: {:.3} ({}) times as long. Not told apart from it by this run: {open}.",
+                slower + open,
+                slowest.name,
+                ratio.value,
+                with_level(&ratio.interval, 3),
+            ),
+            None if open == 0 => String::new(),
+            None => format!(" None of {open} others is told apart from it by this run."),
         };
         Block::finding(format!(
             "With {processors} threads on {processors} processors the highest speedup is that of {}: {:.3} times serial, {}, an \
-             efficiency of {:.3}. Paired with it, these take longer (ratio of times, interval): {}. These are not told apart from it by this run: {}.",
+             efficiency of {:.3}.{others}",
             self.best.name,
             self.speedup.value,
             with_level(&self.speedup.interval, 3),
             self.speedup.value / processors as f64,
-            list(&self.slower),
-            list(&self.open),
         ))
+    }
+
+    fn slowest(&self) -> Option<&(&Schedule, Ratio)> {
+        self.slower.iter().max_by(|a, b| a.1.value.total_cmp(&b.1.value))
+    }
+
+    /// The result in a line.
+    fn result(&self, processors: usize) -> Option<String> {
+        let (best, ties) = (&self.best.name, self.open.len() + 1);
+        let speedup = titles::told(self.speedup)?;
+        let interval = self.speedup.interval;
+        Some(match self.slowest() {
+            Some((slowest, ratio)) => {
+                let first = if ties == 1 {
+                    format!("{best} is the fastest, {speedup} times serial")
+                } else {
+                    format!("{} schedules tie at {speedup} times serial", titles::spelled(ties))
+                };
+                format!("{first}; {} takes {}", slowest.name, titles::longer(ratio.value))
+            }
+            None if ties > 1 => {
+                format!("This machine cannot tell {ties} schedules apart: {best} is {speedup} times as fast as serial")
+            }
+            None if interval.high < 1.0 => format!("{best} is slower than serial"),
+            None if interval.low <= 1.0 => format!("This machine cannot tell {best} from serial"),
+            None => format!("{best} is {speedup} times as fast as serial on {}", counted(processors, "processor")),
+        })
+    }
+
+    /// The times of all schedules over the best one's; `None` without another one.
+    fn table(&self, processors: usize) -> Option<Block> {
+        let of = |list: &[(&'a Schedule, Ratio)], order: &'static str| {
+            let mut list = list.to_vec();
+            list.sort_by(|a, b| a.1.value.total_cmp(&b.1.value));
+            list.into_iter().map(move |(schedule, ratio)| (schedule, Some(ratio), order))
+        };
+        let best = (self.best, None, "the highest speedup");
+        let (open, slower) = (of(&self.open, "not told apart"), of(&self.slower, "slower"));
+        let rows: Vec<(&Schedule, Option<Ratio>, &str)> = [best].into_iter().chain(open).chain(slower).collect();
+        if rows.len() == 1 {
+            return None;
+        }
+        let title = format!("Schedules with {processors} threads beside the one of the highest speedup");
+        let table = Block::table("beside-the-fastest", title, rows)
+            .column("strategy", |(schedule, ..)| schedule.name.clone())
+            .column("pieces", |(schedule, ..)| schedule.key.decomposition.clone())
+            .estimated(format!("time / time of {}", self.best.name), Decimals(3), |(_, ratio, _)| {
+                ratio.map(Estimated::from)
+            })
+            .column("order", |(.., order)| (*order).to_string())
+            .end();
+        Some(table)
     }
 
     fn answer(&self) -> Block {
         let told = |ratio: &Ratio| with_interval(ratio.value, &ratio.interval, 2);
         let others = self.slower.len() + self.open.len();
         let ties = format!("{} is {} times as fast as serial", self.best.name, told(&self.speedup));
-        let slowest = self.slower.iter().max_by(|a, b| a.1.value.total_cmp(&b.1.value));
+        let slowest = self.slowest();
         let text = match slowest {
+            None if others == 0 => format!("{ties}."),
             None => format!("{ties}; none of {others} others is told apart from it."),
             Some((slowest, ratio)) => format!(
                 "{ties}, and {} of {others} others tie with it. The slowest, {}, takes {} times as long.",
@@ -95,7 +158,8 @@ impl Contest<'_> {
                 told(ratio),
             ),
         };
-        Block::Answer { text, stem: "speedup", is_told: slowest.is_some() }
+        let is_told = slowest.is_some() || (others == 0 && !self.speedup.interval.contains(1.0));
+        Block::Answer { text, stem: "speedup", is_told }
     }
 
     fn is_open(&self, schedule: &Schedule) -> bool {
@@ -119,26 +183,39 @@ impl Speedups<'_> {
         // Schedules with a thread for each job have no place on an axis of threads.
         let has_axis = !self.all.iter().all(|(schedule, _)| self.has_a_thread_per_job(schedule)) || self.all.is_empty();
         if strategies.len() <= MOST_LINES && has_axis {
-            let (speedup, efficiency) = (self.speedup_chart(), self.efficiency_chart(&per_processor));
+            let (speedup, efficiency) = (self.speedup_chart(contest), self.efficiency_chart(&per_processor, contest));
             return vec![Block::figure("speedup", speedup), Block::figure("efficiency", efficiency)];
         }
-        let speedups = |title: &str, is_usual: bool| {
-            let plot = self.dots([title, "speedup against serial"], &|speedup, _| speedup, is_usual, contest)?;
+        let speedups = |title: Title, is_usual: bool| {
+            let plot = self.dots(title, "speedup against serial", &|speedup, _| speedup, is_usual, contest)?;
             let processors = (self.processors as f64, counted(self.processors, "processor"));
             Some(DotPlot { guides: vec![(1.0, "serial".to_string()), processors], ..plot })
         };
-        let titles = ["Efficiency by strategy", "speedup per processor in use"];
-        let efficiency = self.dots(titles, &per_processor, true, contest).map(|mut plot| {
-            plot.guides = vec![(1.0, "ideal".to_string())];
-            plot.caption += self.results.weights_in_words();
-            plot
-        });
+        let title = Title::new("Efficiency by strategy").with_result(self.efficiency_result(contest));
+        let efficiency =
+            self.dots(title, "speedup per processor in use", &per_processor, true, contest).map(|mut plot| {
+                plot.guides = vec![(1.0, "ideal".to_string())];
+                plot.caption += self.results.weights_in_words();
+                plot
+            });
         let plots = [
-            ("speedup", speedups("Speedup by strategy", true)),
-            ("speedup-others", speedups("Speedup by strategy, other images", false)),
+            ("speedup", speedups(self.speedup_title("Speedup by strategy", contest), true)),
+            ("speedup-others", speedups("Speedup by strategy, other images".into(), false)),
             ("efficiency", efficiency),
         ];
         plots.into_iter().filter_map(|(stem, plot)| Some(Block::figure(stem, plot?))).collect()
+    }
+
+    fn speedup_title(&self, description: &str, contest: Option<&Contest<'_>>) -> Title {
+        Title::new(description).with_result(contest.and_then(|contest| contest.result(self.processors)))
+    }
+
+    /// The share of the processors that the highest speedup uses, in a line.
+    fn efficiency_result(&self, contest: Option<&Contest<'_>>) -> Option<String> {
+        let Contest { best, speedup, .. } = contest?;
+        let share = Estimated::from(*speedup).times(100.0 / self.results.weight_in_use(self.processors));
+        let processors = counted(self.processors, "processor");
+        Some(format!("{} turns {} % of {processors} into speedup", best.name, titles::told(share)?))
     }
 
     fn table(&self) -> Block {
@@ -213,7 +290,8 @@ impl Speedups<'_> {
     /// one. A strategy with a thread for each job has one dot.
     fn dots(
         &self,
-        [title, axis]: [&str; 2],
+        title: Title,
+        axis: &str,
         value: &dyn Fn(f64, usize) -> f64,
         is_usual: bool,
         contest: Option<&Contest<'_>>,
@@ -261,7 +339,10 @@ impl Speedups<'_> {
         if rows.iter().any(|row| row.dots[threads.len()].is_some()) {
             names.push("a thread per job".to_string());
         }
-        let mut plot = DotPlot::new(title, Axis::linear(axis).including([0.9]), rows).grouped(names);
+        // Speedups of one number of threads are read without those of the others.
+        let side_by_side = (2..=MOST_AREAS).contains(&names.len());
+        let axis = Axis::linear(axis).including(Some(0.9).filter(|_| !side_by_side));
+        let mut plot = DotPlot { side_by_side, ..DotPlot::new(title, axis, rows).grouped(names) };
         let rows = own.iter().flat_map(|(schedule, _)| self.serial.rows(schedule).iter().copied());
         plot.subtitle = self.results.workload_of(&rows.collect::<Vec<&Row>>());
         plot.caption = ratio_bars(own.iter().map(|(_, speedup)| *speedup));
@@ -284,7 +365,7 @@ impl Speedups<'_> {
         Series::by_name(lines)
     }
 
-    fn chart(&self, title: &str, y: Axis, series: Vec<Series>, caption: &str) -> LineChart {
+    fn chart(&self, title: Title, y: Axis, series: Vec<Series>, caption: &str) -> LineChart {
         let ticks: Vec<f64> = series.iter().flat_map(|series| &series.points).map(|point| point.x).collect();
         // On linear axes, a speedup in proportion to the threads is a straight line. Many threads do not fit on them.
         let few = ticks.iter().all(|threads| *threads <= FEW_THREADS);
@@ -296,7 +377,7 @@ impl Speedups<'_> {
         chart
     }
 
-    fn speedup_chart(&self) -> LineChart {
+    fn speedup_chart(&self, contest: Option<&Contest<'_>>) -> LineChart {
         let processors = self.processors as f64;
         let y = Axis::linear("speedup against serial").including([0.0, processors.max(1.0) * 1.25]);
         let has_level = self.all.iter().any(|(schedule, _)| self.has_a_thread_per_job(schedule));
@@ -304,7 +385,8 @@ impl Speedups<'_> {
         let (bars, hollow) = (self.bars(), hollow(self.all.iter().map(|(_, speedup)| Estimated::from(*speedup))));
         let bars = bars.trim_end_matches(hollow);
         let caption = &format!("Ratios within a repetition. {bars}{level}{hollow}");
-        let mut chart = self.chart("Speedup against threads", y, self.series(&|speedup, _| speedup), caption);
+        let title = self.speedup_title("Speedup against threads", contest);
+        let mut chart = self.chart(title, y, self.series(&|speedup, _| speedup), caption);
         let ticks: BTreeSet<usize> =
             chart.series.iter().flat_map(|series| &series.points).map(|point| point.x as usize).collect();
         for (schedule, speedup) in self.all.iter().filter(|(schedule, _)| self.has_a_thread_per_job(schedule)) {
@@ -334,11 +416,12 @@ impl Speedups<'_> {
         self.serial.lines(self.processors).into_iter().filter_map(overlay).collect()
     }
 
-    fn efficiency_chart(&self, per_processor: &dyn Fn(f64, usize) -> f64) -> LineChart {
+    fn efficiency_chart(&self, per_processor: &dyn Fn(f64, usize) -> f64, contest: Option<&Contest<'_>>) -> LineChart {
         let y = Axis::linear("speedup per processor in use").including([0.5, 1.05]);
         let weights = self.results.weights_in_words();
         let caption = &format!("Processors in use: the smaller of threads and processors.{weights} {}", self.bars());
-        let mut chart = self.chart("Efficiency against threads", y, self.series(per_processor), caption);
+        let title = Title::new("Efficiency against threads").with_result(self.efficiency_result(contest));
+        let mut chart = self.chart(title, y, self.series(per_processor), caption);
         chart.overlays = vec![Overlay::guide("ideal: 1", Curve::Line { intercept: 1.0, slope: 0.0 })];
         chart
     }

@@ -11,7 +11,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let image = results.image_name(row);
         if several { format!("{image}, {}", row.schedule.label()) } else { image }
     });
-    let (mut overlays, mut findings, mut series, mut all) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut overlays, mut fits, mut series, mut all) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut shares = Vec::new();
     for (name, rows) in lines {
         shares.push((name.clone(), per_sample(results, &rows)?));
@@ -34,28 +34,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             continue;
         }
         if let (Some(fit), Some(power)) = (line(&pairs, LEVEL), log_log(&pairs, LEVEL)) {
-            let (slope, interval) = (fit.slope.value, fit.slope.interval);
+            let slope = fit.slope.value;
             let curve = Curve::Line { intercept: fit.intercept.value, slope };
             overlays.push(Overlay::fit(format!("fit: {:.2} ms per spp", slope * 1e3), curve, series.len()));
-            let exponent = power.slope.interval;
-            let verdict = if exponent.contains(1.0) {
-                "the interval contains 1: no departure from linear is seen"
-            } else {
-                "the interval does not contain 1"
-            };
-            findings.push(Block::finding(format!(
-                "{name}: {:.3} ms per sample per pixel (95 % {:.3} to {:.3}) and {:.1} ms besides ({:.1} to {:.1}); the exponent of time \
-                 against spp is {:.3} (95 % {:.3} to {:.3}); {verdict}.",
-                slope * 1e3,
-                interval.low * 1e3,
-                interval.high * 1e3,
-                fit.intercept.value * 1e3,
-                fit.intercept.interval.low * 1e3,
-                fit.intercept.interval.high * 1e3,
-                power.slope.value,
-                exponent.low,
-                exponent.high,
-            )));
+            fits.push(Fit { name: name.clone(), slope: fit.slope, besides: fit.intercept, exponent: power.slope });
         }
         series.push(Series::new(name, Look::nth(series.len()), points).scattered());
     }
@@ -64,7 +46,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let linear = series.first().and_then(|series| series.points.last());
     let linear = linear.and_then(|last| Curve::power_through((last.x, last.y), 1.0));
     overlays.extend(linear.map(|curve| Overlay::guide("in proportion to the samples", curve)));
-    let mut chart = LineChart::new("Time against samples per pixel", axis(), Axis::log("wall seconds"), series);
+    let title = Title::new("Time against samples per pixel").with_result(result(&fits));
+    let mut chart = LineChart::new(title, axis(), Axis::log("wall seconds"), series);
     chart.subtitle = results.workload();
     chart.caption = format!("Over seeds and repetitions. {}", bars(all));
     chart.overlays = overlays;
@@ -73,16 +56,95 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     if !known.is_empty() {
         let points =
             |points: Vec<(u32, Estimated)>| points.into_iter().map(|(spp, told)| told.above(spp.into())).collect();
+        let longest = titles::largest_above_1(
+            shares.iter().flat_map(|(_, own)| own).filter_map(|(spp, told)| Some((*spp, Ratio::of(*told)?))),
+        );
+        let result = longest.map_or_else(
+            || "No time per sample is told apart from that of the longest renders".to_string(),
+            |(spp, ratio)| {
+                let longer = titles::longer(ratio.value);
+                format!("Short renders pay for their start: at {spp} samples per pixel a sample takes {longer}")
+            },
+        );
         let series = Series::by_name(shares.into_iter().map(|(name, own)| (name, points(own))));
         let y = Axis::linear("seconds of a sample / those at the most samples").including([0.95, 1.05]);
-        let mut chart = LineChart::new("Is time in proportion to samples?", axis(), y, series);
+        let title = Title::new("Is time in proportion to samples?").with_result(Some(result));
+        let mut chart = LineChart::new(title, axis(), y, series);
         chart.subtitle = results.workload();
         chart.caption = format!("Ratios within a seed and a repetition. {}", bars(known));
         chart.overlays = vec![Overlay::guide("in proportion", Curve::Line { intercept: 1.0, slope: 0.0 })];
         chart.dodge = 4.0;
         blocks.push(Block::figure("time-per-sample", chart));
     }
-    Ok(blocks.into_iter().chain(findings).collect())
+    let table = (!fits.is_empty()).then(|| table(&fits));
+    Ok(blocks.into_iter().chain(finding(&fits)).chain(table).collect())
+}
+
+/// A line through the times of an image, in seconds, and the exponent of time against samples per pixel.
+struct Fit {
+    name: String,
+    slope: Estimate,
+    besides: Estimate,
+    exponent: Estimate,
+}
+
+impl Fit {
+    fn departs(&self) -> bool {
+        !self.exponent.interval.contains(1.0)
+    }
+}
+
+/// The image whose time departs most from a proportion; only of those that depart, if some do.
+fn furthest(fits: &[Fit]) -> Option<&Fit> {
+    // Of exponents that differ by rounding only, the last counts.
+    let off = |fit: &Fit| (fit.departs(), ((fit.exponent.value - 1.0).abs() * 1e6).round() as u64);
+    fits.iter().max_by_key(|fit| off(fit))
+}
+
+/// The result in a line.
+fn result(fits: &[Fit]) -> Option<String> {
+    let fit = furthest(fits)?;
+    let of = if fits.len() > 1 { format!(" of {}", fit.name) } else { String::new() };
+    Some(if fit.departs() {
+        format!("The time{of} grows as samples to the power {:.3}", fit.exponent.value)
+    } else {
+        "Time grows in proportion to the samples: no departure is seen".to_string()
+    })
+}
+
+fn finding(fits: &[Fit]) -> Option<Block> {
+    let Fit { name, slope, besides, exponent } = furthest(fits)?;
+    let departing = fits.iter().filter(|fit| fit.departs()).count();
+    let of_all = match (fits.len(), departing) {
+        (1, _) => String::new(),
+        (all, 0) => format!(", the furthest of {all} from a proportion"),
+        (all, some) => format!(", the furthest from a proportion, from which {some} of {all} depart"),
+    };
+    let verdict = if departing == 0 {
+        "the interval contains 1: no departure from linear is seen"
+    } else {
+        "the interval does not contain 1"
+    };
+    let ms = |of: &Estimate, digits: usize| {
+        let [value, low, high] = [of.value, of.interval.low, of.interval.high].map(|seconds| seconds * 1e3);
+        (format!("{value:.digits$}"), format!("{low:.digits$} to {high:.digits$}"))
+    };
+    let ((slope, slope_interval), (besides, besides_interval)) = (ms(slope, 3), ms(besides, 1));
+    Some(Block::finding(format!(
+        "{name}{of_all}: {slope} ms per sample per pixel (95 % {slope_interval}) and {besides} ms besides ({besides_interval}); the exponent of time \
+         against spp is {:.3} (95 % {:.3} to {:.3}); {verdict}.",
+        exponent.value, exponent.interval.low, exponent.interval.high,
+    )))
+}
+
+fn table(fits: &[Fit]) -> Block {
+    let ms = |of: &Estimate| Estimated::from(*of).times(1e3);
+    Block::table("time-fits", "Time against samples per pixel: fitted lines", fits)
+        .column("image", |fit| fit.name.clone())
+        .estimated("ms per sample per pixel", Decimals(3), |fit| ms(&fit.slope))
+        .estimated("ms besides", Decimals(1), |fit| ms(&fit.besides))
+        .estimated("exponent", Decimals(3), |fit| Estimated::from(fit.exponent))
+        .end()
 }
 
 /// The seconds of a sample over those at the most samples, for each smaller number of samples.

@@ -33,9 +33,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let has_parallel = own.iter().any(|(is_serial, _)| !is_serial);
     let (serial, others): (Vec<_>, Vec<_>) = own.into_iter().partition(|(is_serial, _)| has_parallel && *is_serial);
     let alone: Vec<String> = serial.into_iter().map(|(_, lanes)| format!(" Not drawn: {}.", lanes.title)).collect();
-    let chart = |title: &str, schedules: Vec<Schedule>, more: &str| {
+    let chart = |title: Title, schedules: Vec<Schedule>, more: &str| {
         let mut chart = timeline::charts(schedules, results.workload());
-        chart.title += title;
+        chart.title = title;
         chart.caption = format!(
             "Of each schedule the run with the median time, if possible of those without doubts. {}{more}",
             chart.caption
@@ -45,13 +45,14 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut blocks = Vec::new();
     let others: Vec<Schedule> = others.into_iter().map(|(_, lanes)| lanes).collect();
     if !others.is_empty() || shared.is_empty() {
-        blocks.push(Block::figure("timelines", chart("", others, &alone.concat())));
+        let title = Title::new(timeline::TITLE).with_result(idle(&runs));
+        blocks.push(Block::figure("timelines", chart(title, others, &alone.concat())));
     }
     // A job that shares a processor takes longer by its waiting, so these jobs have a colour scale of their own.
     if !shared.is_empty() {
-        let title = format!(" with more threads than {}", counted(processors, "processor"));
+        let title = format!("{} with more threads than {}", timeline::TITLE, counted(processors, "processor"));
         let more = " The time of a job includes its waiting for a processor.";
-        blocks.push(Block::figure("timelines-oversubscribed", chart(&title, shared, more)));
+        blocks.push(Block::figure("timelines-oversubscribed", chart(title.into(), shared, more)));
     }
     let share = |balance: &Balance, seconds: f64| {
         format!("{:.1} %", 100.0 * seconds / (balance.makespan_s * balance.workers.len() as f64))
@@ -72,4 +73,16 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .end();
     blocks.push(table);
     Ok(blocks)
+}
+
+/// The result in a line: the runs whose workers are idle least and most, among those with a processor for each worker.
+fn idle(runs: &[Run]) -> Option<String> {
+    let parallel = runs.iter().filter(|(_, balance, alone)| *alone && balance.workers.len() > 1);
+    let shares = parallel.map(|(name, balance, _)| (name, 1.0 - balance.utilisation()));
+    let shares: Vec<(&String, f64)> = shares.collect();
+    let (busy, least) = shares.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let (lazy, most) = shares.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let [least, most] = [*least, *most].map(titles::percent);
+    (least != most)
+        .then(|| format!("In these runs, workers are idle for {least} of the time with {busy}, {most} with {lazy}"))
 }

@@ -13,8 +13,15 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             .iter()
             .map(|(schedule, speedup)| (&schedule.name, Estimated::from(*speedup).above(schedule.key.threads as f64))),
     );
+    let processors = results.run.machine.processors;
+    let alone = speedups.iter().filter(|(schedule, ratio)| schedule.key.threads <= processors && !ratio.is_partial);
+    let best = alone.max_by(|a, b| a.0.key.threads.cmp(&b.0.key.threads).then(a.1.value.total_cmp(&b.1.value)));
+    let result = best.filter(|(schedule, _)| schedule.key.threads > 1).and_then(|(schedule, ratio)| {
+        let (name, threads) = (&schedule.name, schedule.key.threads);
+        Some(format!("On {threads} threads {name} renders {} times as much in the same time", titles::told(*ratio)?))
+    });
     let mut chart = LineChart::new(
-        "Weak scaling: scaled speedup against threads",
+        Title::new("Weak scaling: scaled speedup against threads").with_result(result),
         Axis::log("threads, each with the same samples per pixel").ticks_at(threads),
         Axis::linear("serial time for the same samples / time").including([0.0]),
         Series::by_name(lines),

@@ -42,6 +42,11 @@ impl Again {
         let words = ["run".to_string(), asked, format!("--{}", profile.name())];
         Some(Self { run: shell::command(words.into_iter().chain(values)), filters, out: OUT })
     }
+
+    /// The command for all cells.
+    pub(super) fn whole(&self) -> String {
+        format!("{} {}", self.run, self.out)
+    }
 }
 
 /// The axes whose values figures name, each with the name that a row shows for it.

@@ -112,8 +112,13 @@ fn plot(speedups: &[(&BenchRow, [f64; 3])], machine: String) -> DotPlot {
         let dot = Dot::new(*speedup, Some((*low, *high)));
         DotRow::new(format!("{}, {}", row.case, row.parameter), vec![Some(dot)])
     };
+    let result = speedups.first().and_then(|(row, [value, low, high])| {
+        let interval = Interval { low: *low, high: *high, level: LEVEL };
+        let times = titles::told(Estimated::of(*value, Some(interval)))?;
+        Some(format!("{} on {} threads is {times} times as fast as serial", row.case, row.parameter))
+    });
     let mut plot = DotPlot::new(
-        "Speedup by cargo bench",
+        Title::new("Speedup by cargo bench").with_result(result),
         Axis::linear("times as fast as serial").including([1.0]),
         speedups.iter().map(row).collect(),
     );

@@ -75,8 +75,9 @@ fn plot(lines: &[Line], strategies: &[String], yardstick: &str, machine: String)
     let mut rows: Vec<(f64, DotRow)> = strategies.iter().filter_map(row).collect();
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
     let axis = Axis::log(format!("wake latency / wake latency of {yardstick}"));
+    let title = format!("Wake latency of each strategy, compared with {yardstick}");
     let mut plot = DotPlot::new(
-        format!("Wake latency of each strategy, compared with {yardstick}"),
+        Title::new(title).with_result(result(lines, yardstick)),
         axis,
         rows.into_iter().map(|(_, row)| row).collect(),
     )
@@ -87,6 +88,24 @@ fn plot(lines: &[Line], strategies: &[String], yardstick: &str, machine: String)
     );
     plot.guides = vec![(1.0, yardstick.to_string())];
     plot
+}
+
+/// The result in a line: the strategy that certainly wakes fastest, and after which gap.
+fn result(lines: &[Line], yardstick: &str) -> Option<String> {
+    let told = lines.iter().filter_map(|line| Some((line, line.wake_ratio?)));
+    let known: Vec<(&Line, Estimated)> = told.filter(|(_, ratio)| ratio.interval.is_some()).collect();
+    if known.is_empty() {
+        return None;
+    }
+    let faster = known.into_iter().filter(|(_, ratio)| ratio.interval.is_some_and(|interval| interval.high < 1.0));
+    let fastest = faster.min_by(|a, b| a.1.value.total_cmp(&b.1.value));
+    Some(fastest.map_or_else(
+        || format!("No strategy wakes faster than {yardstick} beyond the noise"),
+        |(line, ratio)| {
+            let less = titles::percent(1.0 - ratio.value);
+            format!("After gaps of {}, {} wakes {less} sooner than {yardstick}", us(line.gap_s), line.strategy)
+        },
+    ))
 }
 
 fn table(lines: &[Line], yardstick: &str) -> Block {

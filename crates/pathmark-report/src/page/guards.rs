@@ -56,6 +56,16 @@ fn answer(rows: &[PriceRow]) -> Option<Block> {
     Some(Block::Answer { text, stem: "guards", is_told: high - low <= 4.0 })
 }
 
+/// The result in a line: the dearest guard, if its price is beyond the noise.
+fn result(rows: &[PriceRow]) -> Option<String> {
+    let priced = rows.iter().filter_map(|row| Some((row, percent(row)?)));
+    let certain = priced.filter(|(_, share)| share.interval.is_some_and(|interval| interval.low > 0.0));
+    let Some((row, share)) = certain.max_by(|a, b| a.1.value.total_cmp(&b.1.value)) else {
+        return Some("No guard costs more than the noise".to_string());
+    };
+    Some(format!("The dearest guard, {}, costs {} % of a render", row.guard, titles::told(share)?))
+}
+
 fn plot(rows: &[PriceRow], machine: String) -> DotPlot {
     let share = |row: &PriceRow| Some(percent(row).map(|share| share.dot()));
     let mut sorted: Vec<&PriceRow> = rows.iter().filter(|row| row.share.is_some()).collect();
@@ -66,7 +76,8 @@ fn plot(rows: &[PriceRow], machine: String) -> DotPlot {
     let name = |row: &PriceRow| format!("{} ({}, {})", row.guard, row.scene, row.often);
     let named = sorted.into_iter().filter_map(|row| Some(DotRow { name: name(row), dots: vec![share(row)?] }));
     let axis = Axis::linear("share of the time of a sample, %").including([0.0]);
-    let mut plot = DotPlot::new("What each guard costs in a render", axis, named.collect());
+    let title = Title::new("What each guard costs in a render").with_result(result(rows));
+    let mut plot = DotPlot::new(title, axis, named.collect());
     plot.subtitle = machine;
     plot.caption = "Extra time of the guard's operations in a sample, over the time of a sample of a scene that meets it, scalar kernel on one thread. Below 0 the guard saves time. \
         Bars: 95 % interval over processes. The table says what goes wrong without each guard."

@@ -19,6 +19,7 @@ use crate::measure::{LeftOut, Record, TimingConcerns};
 use crate::plot::Figure;
 use crate::prelude::joined;
 use crate::results::Results;
+use crate::shell;
 use crate::words::counted;
 use again::Again;
 use block::Block;
@@ -423,10 +424,22 @@ fn figure_markup(section: &Section, stem: &str, figure: &dyn Figure, styles: &mu
     })
 }
 
-/// The number of a figure, which the style sheet counts, and a link to it.
+/// The number of a figure, which the style sheet counts, a link to it, and its origin.
 fn number(section: &Section, stem: &str) -> Markup {
-    html! { a href={ "#" (section.name) "-" (stem) } {} }
+    html! { a href={ "#" (section.name) "-" (stem) } {} (origin(section)) }
 }
+
+/// The rows of a figure, and the link to the commands that draw it or measure it again.
+fn origin(section: &Section) -> Markup {
+    html! {
+        @if let Some(rows) = section.files.first() {
+            span.origin { " " a href=(rows) { "Rows" } ", " a href={ "#" (section.name) "-" (AGAIN) } { "commands" } }
+        }
+    }
+}
+
+/// The end of the anchor of a section's commands.
+const AGAIN: &str = "again";
 
 /// Data for the page's script.
 fn json(data: &impl Serialize) -> String {
@@ -536,6 +549,12 @@ fn provenance(section: &Section, run: &RunFile) -> Markup {
         @if !section.files.is_empty() {
             p.files {
             "Raw data: " @for (place, file) in section.files.iter().enumerate() { @if place > 0 { ", " } a href=(file) { (file) } } "."
+            }
+            p.files id={ (section.name) "-" (AGAIN) } {
+                "To draw the figures again, in the folder of this page: " code.redraw { (shell::command(["report", "."])) } "."
+                @if let Some(again) = &section.again {
+                    " To measure again, in the folder where it was measured: " code.measure { (again.whole()) } "."
+                }
             }
         }
         details open[false] {

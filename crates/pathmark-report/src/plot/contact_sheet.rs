@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::drawing::{Align, Drawing};
 use super::style::{INK, LEADING, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
+use super::title::Title;
 use super::{colour_bar, font, frame, number, paint};
 use crate::error::{Error, Result};
 use crate::image_io::Image;
@@ -129,7 +130,7 @@ impl ContactSheet {
         let width = 2.0 * MARGIN + columns * (column + GAP) - GAP;
 
         let mut drawing = Drawing::new(&self.title, width, 0.0);
-        let mut y = frame::words_above(&mut drawing, &self.title, &self.subtitle);
+        let mut y = frame::words_above(&mut drawing, &Title::from(&self.title), &self.subtitle);
         let mut placed = Vec::new();
         for (number, (cells, row)) in self.rows.iter().zip(&images).enumerate() {
             y += GAP;

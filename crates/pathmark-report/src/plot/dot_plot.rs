@@ -9,6 +9,7 @@ use super::frame::{self, GAP, TICK, WIDTH};
 use super::legend::{self, LegendEntry, Sample};
 use super::number::{between, short};
 use super::style::{DASHES, FAINT, HAIRLINE, INK, LEADING, Look, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
+use super::title::Title;
 use super::{font, marker};
 
 /// Largest width of a row's name; longer ones are broken.
@@ -17,6 +18,8 @@ const WIDEST: f64 = 260.0;
 const ROW: f64 = 25.0;
 /// Distance of the groups' dots in a row.
 const GROUP: f64 = 11.0;
+/// Space between two areas.
+const BETWEEN: f64 = 34.0;
 /// Width of a guide's line.
 const GUIDE: f64 = 1.5;
 
@@ -56,12 +59,14 @@ impl DotRow {
 /// The plot. Leaves out dots without a position on its axis, and reports their number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DotPlot {
-    pub title: String,
+    pub title: Title,
     pub subtitle: String,
     pub caption: String,
     pub axis: Axis,
     /// The names of the groups. A single one has no entry in the legend.
     pub groups: Vec<String>,
+    /// Whether each group has an area and a range of its own; the areas stand side by side.
+    pub side_by_side: bool,
     /// The rows, the first at the top.
     pub rows: Vec<DotRow>,
     /// Vertical lines, such as one at a ratio of 1, each with its name in the legend.
@@ -70,9 +75,10 @@ pub struct DotPlot {
 
 impl DotPlot {
     /// A plot of `rows` with one group.
-    pub fn new(title: impl Into<String>, axis: Axis, rows: Vec<DotRow>) -> Self {
+    pub fn new(title: impl Into<Title>, axis: Axis, rows: Vec<DotRow>) -> Self {
         let (subtitle, caption) = (String::new(), String::new());
-        Self { title: title.into(), subtitle, caption, axis, groups: vec![String::new()], rows, guides: Vec::new() }
+        let (groups, guides) = (vec![String::new()], Vec::new());
+        Self { title: title.into(), subtitle, caption, axis, groups, side_by_side: false, rows, guides }
     }
 
     /// The same plot with a group for each name; each row has a dot for each group.
@@ -82,23 +88,25 @@ impl DotPlot {
         self
     }
 
-    /// The dots of a row, each with the index of its group.
-    fn dots<'a>(&self, row: &'a DotRow) -> impl Iterator<Item = (usize, &'a Dot)> + use<'a> {
-        row.dots.iter().take(self.groups.len()).enumerate().filter_map(|(group, dot)| Some((group, dot.as_ref()?)))
+    /// The groups of each area.
+    fn areas(&self) -> Vec<Vec<usize>> {
+        let groups = 0..self.groups.len();
+        if self.side_by_side { groups.map(|group| vec![group]).collect() } else { vec![groups.collect()] }
     }
 
-    /// The range of all dots and their intervals; `None` if no dot can be drawn.
-    fn range(&self) -> Option<Range> {
-        let dots = self.rows.iter().flat_map(|row| self.dots(row)).map(|(_, dot)| dot);
+    /// The range of all dots of an area and their intervals; `None` if no dot can be drawn.
+    fn range(&self, groups: &[usize]) -> Option<Range> {
+        let dots = self.rows.iter().flat_map(|row| dots(row, groups)).map(|(_, dot)| dot);
         let drawable: Vec<&Dot> = dots.filter(|dot| Range::of(&self.axis, [dot.value]).is_some()).collect();
         let ends = drawable.iter().filter_map(|dot| dot.interval).flat_map(|(low, high)| [low, high]);
         let values: Vec<f64> = drawable.iter().map(|dot| dot.value).chain(ends).collect();
-        let guided = self.axis.clone().including(self.guides.iter().map(|guide| guide.0));
-        Range::of(&guided, values)
+        // A guide for one number of threads would squeeze the areas of the others.
+        let guides = self.guides.iter().filter(|_| !self.side_by_side);
+        Range::of(&self.axis.clone().including(guides.map(|guide| guide.0)), values)
     }
 
     fn entries(&self) -> Vec<LegendEntry> {
-        let groups = self.groups.iter().enumerate().filter(|_| self.groups.len() > 1);
+        let groups = self.groups.iter().enumerate().filter(|_| self.groups.len() > 1 && !self.side_by_side);
         let sample = |group| Sample::Series { look: Look::nth(group), line: false };
         let dots = groups.map(|(group, name)| LegendEntry::new(sample(group), name, name));
         let guides = self.guides.iter().enumerate().map(|(index, (_, name))| {
@@ -107,20 +115,50 @@ impl DotPlot {
         dots.chain(guides).collect()
     }
 
-    /// Draws a row around `middle`; returns the number of dots without a position.
+    /// Draws an area with the dots of some groups in rows around `middles`; returns the number of dots without a position.
+    fn draw_area(&self, drawing: &mut Drawing, groups: &[usize], area: [f64; 4], middles: &[f64]) -> usize {
+        let [left, top, right, bottom] = area;
+        let centre = 0.5 * (left + right);
+        if let ([group], true) = (groups, self.side_by_side) {
+            let at = (centre, top - 0.6 * TEXT_SIZE * LEADING);
+            drawing.text(at, &self.groups[*group], TEXT_SIZE, Look::nth(*group).colour, Align::Centre);
+        }
+        let lost = if let Some(range) = self.range(groups) {
+            let most = if self.side_by_side { 4 } else { 9 };
+            frame::ruler(drawing, &range.ticks(self.axis.ticks.as_deref(), most), area);
+            for &middle in middles {
+                drawing.path(vec![(left, middle), (right, middle)], FAINT, HAIRLINE);
+            }
+            for (index, (value, _)) in self.guides.iter().enumerate() {
+                if let Some(place) = range.place(*value).filter(|place| (0.0..=1.0).contains(place)) {
+                    let x = left + place * (right - left);
+                    drawing.dashed(vec![(x, top), (x, bottom)], MUTED, GUIDE, DASHES[1 + index % 2]);
+                }
+            }
+            let rows = self.rows.iter().zip(middles);
+            rows.map(|(row, middle)| self.draw_row(drawing, (row, groups), &range, (left, right), *middle)).sum()
+        } else {
+            drawing.text((centre, 0.5 * (top + bottom)), "no data", TEXT_SIZE, MUTED, Align::Centre);
+            self.rows.iter().map(|row| dots(row, groups).count()).sum()
+        };
+        drawing.outline(area, INK);
+        lost
+    }
+
+    /// Draws the dots of a row around `middle`; returns the number of dots without a position.
     fn draw_row(
         &self,
         drawing: &mut Drawing,
-        row: &DotRow,
+        (row, groups): (&DotRow, &[usize]),
         range: &Range,
         (left, right): (f64, f64),
         middle: f64,
     ) -> usize {
         let x = |place: f64| left + place * (right - left);
         let mut lost = 0;
-        let last = self.dots(row).count().saturating_sub(1) as f64;
+        let last = dots(row, groups).count().saturating_sub(1) as f64;
         // Dots are centred on the row's line, whichever groups have one, so that dots of two rows do not mix.
-        for (index, (group, dot)) in self.dots(row).enumerate() {
+        for (index, (group, dot)) in dots(row, groups).enumerate() {
             let look = Look::nth(group);
             let y = middle + GROUP * (index as f64 - 0.5 * last);
             let Some(place) = range.place(dot.value) else {
@@ -145,6 +183,11 @@ impl DotPlot {
     }
 }
 
+/// The dots of some groups in a row, each with the index of its group.
+fn dots<'a>(row: &'a DotRow, groups: &'a [usize]) -> impl Iterator<Item = (usize, &'a Dot)> {
+    groups.iter().filter_map(|group| Some((*group, row.dots.get(*group)?.as_ref()?)))
+}
+
 fn note(row: &DotRow, group: &str, dot: &Dot, at: Place) -> Note {
     let of_group = if group.is_empty() { String::new() } else { format!(", {group}") };
     let text = format!("{}{of_group}: {}{}", row.name, short(dot.value, 4), between(dot.interval, 4));
@@ -154,8 +197,12 @@ fn note(row: &DotRow, group: &str, dot: &Dot, at: Place) -> Note {
 
 impl Figure for DotPlot {
     fn drawing(&self) -> Drawing {
-        let mut drawing = Drawing::new(&self.title, WIDTH, 0.0);
-        let top = frame::words_above(&mut drawing, &self.title, &self.subtitle) + 12.0;
+        let mut drawing = Drawing::new(self.title.head(), WIDTH, 0.0);
+        let mut top = frame::words_above(&mut drawing, &self.title, &self.subtitle) + 12.0;
+        let areas = self.areas();
+        if self.side_by_side {
+            top += TEXT_SIZE * LEADING;
+        }
         let names: Vec<Vec<String>> = self.rows.iter().map(|row| font::wrap(&row.name, SMALL_SIZE, WIDEST)).collect();
         let widest = names.iter().flatten().map(|line| font::width(line, SMALL_SIZE)).fold(0.0, f64::max);
         let entries = self.entries();
@@ -163,41 +210,30 @@ impl Figure for DotPlot {
         let left = MARGIN + widest + GAP;
         let right = WIDTH - MARGIN - if legend.0 > 0.0 { legend.0 + 20.0 } else { 0.0 };
         let height = |(row, name): (&DotRow, &Vec<String>)| {
-            let dots = ROW + GROUP * self.dots(row).count().saturating_sub(1) as f64;
-            dots.max(name.len() as f64 * SMALL_SIZE * LEADING + 6.0)
+            let most = areas.iter().map(|groups| dots(row, groups).count()).max().unwrap_or(0);
+            (ROW + GROUP * most.saturating_sub(1) as f64).max(name.len() as f64 * SMALL_SIZE * LEADING + 6.0)
         };
         let heights: Vec<f64> = self.rows.iter().zip(&names).map(height).collect();
         let bottom = top + heights.iter().sum::<f64>().max(legend.1).max(2.0 * ROW);
-        let area = [left, top, right, bottom];
-
+        let below = |y: &mut f64, height: &f64| {
+            *y += height;
+            Some(*y - 0.5 * height)
+        };
+        let middles: Vec<f64> = heights.iter().scan(top, below).collect();
+        let width = (right - left - BETWEEN * areas.len().saturating_sub(1) as f64) / areas.len().max(1) as f64;
         let mut lost = 0;
-        if let Some(range) = self.range() {
-            frame::ruler(&mut drawing, &range.ticks(self.axis.ticks.as_deref(), 9), area);
-            let below = |y: &mut f64, height: &f64| {
-                *y += height;
-                Some(*y - 0.5 * height)
-            };
-            let middles: Vec<f64> = heights.iter().scan(top, below).collect();
-            for &middle in &middles {
-                drawing.path(vec![(left, middle), (right, middle)], FAINT, HAIRLINE);
-            }
-            for (index, (value, _)) in self.guides.iter().enumerate() {
-                if let Some(x) = range.place(*value).map(|place| left + place * (right - left)) {
-                    drawing.dashed(vec![(x, top), (x, bottom)], MUTED, GUIDE, DASHES[1 + index % 2]);
-                }
-            }
-            for ((row, name), &middle) in self.rows.iter().zip(&names).zip(&middles) {
+        for (index, groups) in areas.iter().enumerate() {
+            let start = left + index as f64 * (width + BETWEEN);
+            lost += self.draw_area(&mut drawing, groups, [start, top, start + width, bottom], &middles);
+        }
+        if areas.iter().any(|groups| self.range(groups).is_some()) {
+            for (name, middle) in names.iter().zip(&middles) {
                 for (i, line) in name.iter().enumerate() {
                     let offset = (i as f64 - 0.5 * (name.len() as f64 - 1.0)) * SMALL_SIZE * LEADING;
                     drawing.text((left - GAP, middle + offset), line, SMALL_SIZE, INK, Align::Right);
                 }
-                lost += self.draw_row(&mut drawing, row, &range, (left, right), middle);
             }
-        } else {
-            lost += self.rows.iter().map(|row| self.dots(row).count()).sum::<usize>();
-            drawing.text((0.5 * (left + right), 0.5 * (top + bottom)), "no data", TEXT_SIZE, MUTED, Align::Centre);
         }
-        drawing.outline(area, INK);
         legend::draw(&mut drawing, &entries, (right + 20.0, top));
         let mut y = bottom + TICK + GAP + SMALL_SIZE + 14.0;
         drawing.text((0.5 * (left + right), y), &self.axis.label, TEXT_SIZE, INK, Align::Centre);

@@ -4,6 +4,7 @@ use super::axis::{Axis, Range, Tick};
 use super::drawing::{Align, Drawing, Place};
 use super::font;
 use super::style::{Colour, FAINT, GRID, HAIRLINE, INK, LEADING, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE, TITLE_SIZE};
+use super::title::Title;
 
 pub(super) const WIDTH: f64 = 960.0;
 /// Height of the area in which data is drawn, if the legend does not need more.
@@ -27,12 +28,13 @@ pub(super) struct Frame {
 impl Frame {
     /// Lays out a chart and draws all of it except data and legend.
     pub(super) fn begin(
-        [title, subtitle, caption]: [&str; 3],
+        title: &Title,
+        [subtitle, caption]: [&str; 2],
         axes: (&Axis, &Axis),
         ranges: Option<(Range, Range)>,
         legend: (f64, f64),
     ) -> (Drawing, Self) {
-        let mut drawing = Drawing::new(title, WIDTH, 0.0);
+        let mut drawing = Drawing::new(title.head(), WIDTH, 0.0);
         let top = words_above(&mut drawing, title, subtitle) + 12.0;
         let right = WIDTH - MARGIN - if legend.0 > 0.0 { legend.0 + 20.0 } else { 0.0 };
         let frame = Self::within(&mut drawing, [MARGIN, top, right, top + DATA_HEIGHT.max(legend.1)], axes, ranges);
@@ -139,10 +141,10 @@ pub(super) fn remark(drawing: &mut Drawing, text: &str) {
     drawing.text((MARGIN, y), text, SMALL_SIZE, MUTED, Align::Left);
 }
 
-/// Writes title and subtitle at the top, broken to the drawing's width, and returns the y below them.
-pub(super) fn words_above(drawing: &mut Drawing, title: &str, subtitle: &str) -> f64 {
-    let y = lines(drawing, title, MARGIN, TITLE_SIZE, INK);
-    lines(drawing, subtitle, y, TEXT_SIZE, MUTED)
+/// Writes title, description and subtitle at the top, broken to the drawing's width, and returns the y below them.
+pub(super) fn words_above(drawing: &mut Drawing, title: &Title, subtitle: &str) -> f64 {
+    let y = lines(drawing, title.head(), MARGIN, TITLE_SIZE, INK);
+    lines(drawing, &title.below(subtitle), y, TEXT_SIZE, MUTED)
 }
 
 /// Writes a caption from `y` on and returns the y below it.

@@ -11,6 +11,7 @@ use super::axis::{Axis, Range};
 use super::drawing::{Align, Drawing};
 use super::frame::{self, GAP, TICK, WIDTH};
 use super::style::{INK, LEADING, LINE, MARGIN, MUTED, PAPER, SMALL_SIZE, TEXT_SIZE};
+use super::title::Title;
 use super::{colour_bar, font, number};
 use crate::metric::heat_colour;
 use serde::Serialize;
@@ -68,7 +69,7 @@ pub struct Schedule {
 /// The chart. Leaves out impossible jobs (without a worker, or with invalid times or values), and reports their number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GanttChart {
-    pub title: String,
+    pub title: Title,
     pub subtitle: String,
     pub caption: String,
     /// Meaning of the colours, with the unit.
@@ -175,7 +176,7 @@ impl Figure for GanttChart {
     }
 
     fn drawing(&self) -> Drawing {
-        let mut drawing = Drawing::new(&self.title, WIDTH, 0.0);
+        let mut drawing = Drawing::new(self.title.head(), WIDTH, 0.0);
         let mut y = frame::words_above(&mut drawing, &self.title, &self.subtitle);
         let first = y;
         let palette = Palette::of(self);

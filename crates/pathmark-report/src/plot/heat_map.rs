@@ -6,6 +6,7 @@ use super::Figure;
 use super::drawing::{Align, Drawing};
 use super::frame::{self, WIDTH};
 use super::style::{GRID, INK, LEADING, MARGIN, MUTED, TEXT_SIZE};
+use super::title::Title;
 use super::{colour_bar, font, number};
 use crate::metric::heat_colour;
 
@@ -33,7 +34,7 @@ const SHADES: f64 = 127.0;
 /// The figure: one image. Tiles whose value is not finite are grey, and it reports their number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatMap {
-    pub title: String,
+    pub title: Title,
     pub subtitle: String,
     pub caption: String,
     /// Meaning of the colours, with the unit.
@@ -77,7 +78,7 @@ impl Figure for HeatMap {
         let (width, height) = (f64::from(self.width.max(1)), f64::from(self.height.max(1)));
         let factor = ((WIDTH - 2.0 * MARGIN) / width).min(TALLEST / height);
         // No wider than the image and the colour bar with the last label.
-        let mut drawing = Drawing::new(&self.title, 2.0 * MARGIN + (width * factor).max(BAR + MARGIN), 0.0);
+        let mut drawing = Drawing::new(self.title.head(), 2.0 * MARGIN + (width * factor).max(BAR + MARGIN), 0.0);
         let mut y = frame::words_above(&mut drawing, &self.title, &self.subtitle) + 12.0;
         let ends = self.ends();
         let widest = drawing.width - 2.0 * MARGIN;

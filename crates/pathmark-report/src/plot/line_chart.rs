@@ -10,6 +10,7 @@ use super::marker;
 use super::number::{between, short};
 use super::overlay::{Overlay, inside};
 use super::style::{Colour, DASHES, Dash, LINE, Look, MUTED, SMALL_SIZE, TEXT_SIZE};
+use super::title::Title;
 use std::collections::HashMap;
 
 /// Distance of a word from its point, in pixels.
@@ -106,8 +107,7 @@ impl Series {
 /// reports their number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LineChart {
-    /// The subject, in one line.
-    pub title: String,
+    pub title: Title,
     /// Workload, machine, meaning of the bars; may be empty.
     pub subtitle: String,
     /// Remarks below the chart; may be empty.
@@ -121,7 +121,7 @@ pub struct LineChart {
     pub dodge: f64,
     /// Words beside points, such as their samples per pixel.
     pub words: Vec<(Point, String)>,
-    /// Whether each series is named at the end of its line instead of in a legend.
+    /// Whether each series is named at the end of its line, where the names fit, instead of in a legend.
     pub named_at_ends: bool,
 }
 
@@ -145,22 +145,25 @@ impl LineChart {
     }
 
     /// A chart of `series`, without guides.
-    pub fn new(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> Self {
+    pub fn new(title: impl Into<Title>, x: Axis, y: Axis, series: Vec<Series>) -> Self {
         let (subtitle, caption) = (String::new(), String::new());
         let (overlays, words) = (Vec::new(), Vec::new());
-        Self { title: title.into(), subtitle, caption, x, y, series, overlays, dodge: 0.0, words, named_at_ends: false }
+        Self { title: title.into(), subtitle, caption, x, y, series, overlays, dodge: 0.0, words, named_at_ends: true }
     }
 
     /// The ranges of both axes; `None` if no point can be drawn.
     pub(super) fn ranges(&self) -> Option<(Range, Range)> {
-        // A point needs a position on both axes; otherwise it counts for neither.
-        let alone = |axis: &Axis, value: f64| Range::of(axis, [value]).is_some();
-        let drawable = |point: &&Point| alone(&self.x, point.x) && alone(&self.y, point.y);
-        let points: Vec<&Point> = self.series.iter().flat_map(|series| &series.points).filter(drawable).collect();
+        let points = self.series.iter().flat_map(|series| &series.points).filter(|point| self.has_place(point));
+        let points: Vec<&Point> = points.collect();
         let ends = |interval: Option<(f64, f64)>| interval.into_iter().flat_map(|(low, high)| [low, high]);
         let x = Range::of(&self.x, points.iter().flat_map(|p| ends(p.x_interval).chain([p.x])))?;
         let y = Range::of(&self.y, points.iter().flat_map(|p| ends(p.y_interval).chain([p.y])))?;
         Some((x, y))
+    }
+
+    /// Whether a point has a position on both axes; otherwise it counts for neither.
+    fn has_place(&self, point: &Point) -> bool {
+        Range::of(&self.x, [point.x]).is_some() && Range::of(&self.y, [point.y]).is_some()
     }
 
     /// For each series the index of the first one with the same points. The later one would hide it, so both are drawn
@@ -206,7 +209,7 @@ impl LineChart {
         }
         for (index, overlay) in self.overlays.iter().enumerate() {
             let (colour, dash) = self.stroke(index, overlay);
-            drawing.part(PartKind::Series, &overlay.label, |drawing| {
+            drawing.part(PartKind::Series, self.part_of(overlay, &first_alike), |drawing| {
                 for stretch in frame.curve(|x, y| inside(&overlay.curve, x, y)) {
                     drawing.dashed(stretch, colour, FIT_LINE, dash);
                 }
@@ -225,10 +228,59 @@ impl LineChart {
         lost
     }
 
-    /// The name, colour and last point of each series.
-    fn ends(&self) -> Vec<EndLabel<'_>> {
-        let ended = self.series.iter().filter_map(|series| Some((series, *series.points.last()?)));
-        ended.map(|(series, point)| EndLabel { text: &series.name, point, colour: series.look.colour }).collect()
+    /// The names at the ends of lines, each with its line's part of the drawing. A fit is named with its series.
+    fn end_names(&self, first_alike: &[usize]) -> Vec<EndName<'_>> {
+        let own = self.series.iter().enumerate().filter(|(index, _)| first_alike[*index] == *index);
+        let series = own.map(|(index, series)| {
+            let names: Vec<&str> = self.alike(first_alike, index).map(|series| series.name.as_str()).collect();
+            let fits = self.overlays.iter().filter(|overlay| overlay.fitted_to == Some(index));
+            let fits: Vec<&str> = fits.map(|overlay| overlay.label.as_str()).collect();
+            let fitted = if fits.is_empty() { String::new() } else { format!(" ({})", fits.join(", ")) };
+            let text = names.join(" = ") + &fitted;
+            EndName { part: &series.name, text, line: End::Series(index), colour: series.look.colour }
+        });
+        let guides = self.overlays.iter().enumerate().filter(|(_, overlay)| overlay.fitted_to.is_none());
+        let guides = guides.map(|(index, overlay)| EndName {
+            part: &overlay.label,
+            text: overlay.label.clone(),
+            line: End::Guide(index),
+            colour: MUTED,
+        });
+        series.chain(guides).collect()
+    }
+
+    /// The end of a line, in pixels; `None` if it cannot be drawn.
+    fn end(&self, frame: &Frame, end: End) -> Option<Place> {
+        match end {
+            End::Series(index) => {
+                let mut spots = self.series[index].points.iter().rev().filter_map(|point| frame.spot(point.x, point.y));
+                spots.next().map(|spot| (spot.0 + self.shift(index) + BESIDE, spot.1))
+            }
+            End::Guide(index) => {
+                let stretches = frame.curve(|x, y| inside(&self.overlays[index].curve, x, y));
+                stretches.last()?.last().copied()
+            }
+        }
+    }
+
+    /// Whether the names stand at the ends of the lines: all have an end, and the names fit beside the data.
+    fn is_named_at_ends(&self, names: &[EndName<'_>]) -> bool {
+        let has_end = |series: &Series| series.points.iter().any(|point| self.has_place(point));
+        self.named_at_ends
+            && self.series.iter().all(has_end)
+            && end_labels::fit(names.iter().map(|name| name.text.as_str()))
+    }
+
+    /// The part of the drawing that a guide or fit belongs to: a fit goes with its series if its name does.
+    fn part_of<'a>(&'a self, overlay: &'a Overlay, first_alike: &[usize]) -> &'a str {
+        let with_series = self.is_named_at_ends(&self.end_names(first_alike));
+        let fitted = overlay.fitted_to.filter(|_| with_series).and_then(|index| self.series.get(index));
+        fitted.map_or(&overlay.label, |series| &series.name)
+    }
+
+    /// Pixels by which a series is moved sideways.
+    fn shift(&self, index: usize) -> f64 {
+        self.dodge * (index as f64 - 0.5 * (self.series.len() as f64 - 1.0))
     }
 
     /// Colour and dashes of overlay number `index`; neighbouring guides differ in their dashes.
@@ -242,7 +294,7 @@ impl LineChart {
     /// Draws a series, and those with the same points, into the frame; returns the number of points without a position.
     fn draw_series(&self, drawing: &mut Drawing, frame: &Frame, first_alike: &[usize], index: usize) -> usize {
         let series = &self.series[index];
-        let shift = self.dodge * (index as f64 - 0.5 * (self.series.len() as f64 - 1.0));
+        let shift = self.shift(index);
         let moved = |place: Place| (place.0 + shift, place.1);
         let spots: Vec<Option<Place>> = series.points.iter().map(|p| frame.spot(p.x, p.y).map(moved)).collect();
         if series.line {
@@ -306,6 +358,22 @@ impl LineChart {
     }
 }
 
+/// A line that has a name at its end: a series, or a guide among the overlays.
+#[derive(Debug, Clone, Copy)]
+enum End {
+    Series(usize),
+    Guide(usize),
+}
+
+/// A name at the end of a line.
+struct EndName<'a> {
+    /// The part of the drawing that it names.
+    part: &'a str,
+    text: String,
+    line: End,
+    colour: Colour,
+}
+
 impl Figure for LineChart {
     fn other_axes(&self) -> Option<(&'static str, Drawing)> {
         let toggled = self.toggled()?;
@@ -314,18 +382,27 @@ impl Figure for LineChart {
     }
 
     fn drawing(&self) -> Drawing {
-        let entries = self.entries(&self.first_alike());
-        let ranges = self.ranges();
-        let words = [&self.title, &self.subtitle, &self.caption].map(String::as_str);
-        let legend = if self.named_at_ends { (end_labels::width(&self.ends()), 0.0) } else { legend::size(&entries) };
-        let (mut drawing, frame) = Frame::begin(words, (&self.x, &self.y), ranges, legend);
+        let first_alike = self.first_alike();
+        let (entries, names) = (self.entries(&first_alike), self.end_names(&first_alike));
+        let at_ends = self.is_named_at_ends(&names);
+        let beside = if at_ends {
+            (end_labels::width(names.iter().map(|name| name.text.as_str())), 0.0)
+        } else {
+            legend::size(&entries)
+        };
+        let words = [&self.subtitle, &self.caption].map(String::as_str);
+        let (mut drawing, frame) = Frame::begin(&self.title, words, (&self.x, &self.y), self.ranges(), beside);
         let lost = self.draw_data(&mut drawing, &frame);
         if lost > 0 {
             let plural = if lost == 1 { "point has" } else { "points have" };
             frame::remark(&mut drawing, &format!("{lost} {plural} no place on these axes"));
         }
-        if self.named_at_ends {
-            end_labels::draw(&mut drawing, &frame, &self.ends());
+        if at_ends {
+            let label = |name: &EndName<'_>| {
+                let at = self.end(&frame, name.line)?;
+                Some(EndLabel { part: name.part.to_string(), text: name.text.clone(), at, colour: name.colour })
+            };
+            end_labels::draw(&mut drawing, &frame, names.iter().filter_map(label).collect());
         } else {
             legend::draw(&mut drawing, &entries, frame.legend());
         }

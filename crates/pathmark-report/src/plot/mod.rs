@@ -28,6 +28,7 @@ pub mod style;
 pub(crate) mod svg;
 #[cfg(test)]
 mod tests;
+mod title;
 
 use std::path::Path;
 
@@ -44,6 +45,7 @@ pub use line_chart::{LineChart, Point, Series, Spread};
 pub use overlay::{Curve, Overlay};
 pub use panels::Panels;
 pub use stacked_bar::{Piece, StackPart, StackRow, StackedBars};
+pub use title::Title;
 
 /// A figure that can be drawn as vectors and as pixels.
 pub trait Figure {

@@ -33,7 +33,7 @@ impl Figure for Panels {
             for (column, chart) in row.iter().enumerate() {
                 let left = MARGIN + column as f64 * (width + GAP);
                 let mut title_end = top;
-                for line in font::wrap(&chart.title, TEXT_SIZE, width) {
+                for line in font::wrap(chart.title.head(), TEXT_SIZE, width) {
                     drawing.text((left, title_end + 0.5 * TEXT_SIZE), &line, TEXT_SIZE, INK, Align::Left);
                     title_end += TEXT_SIZE * LEADING;
                 }

@@ -152,6 +152,33 @@ fn rows_and_groups_are_all_there() {
     }
 }
 
+/// Each group has a range of its own, so its largest dot is as far right as in every other area.
+#[test]
+fn groups_side_by_side_do_not_share_an_axis() {
+    for axis in [Axis::linear("s a job"), Axis::log("s a job")] {
+        let mut plot = dots(24, 3, axis);
+        plot.side_by_side = true;
+        for row in &mut plot.rows {
+            let larger = |dot: &Dot| {
+                let interval = dot.interval.map(|(low, high)| (8.0 * low, 8.0 * high));
+                Dot { value: 8.0 * dot.value, interval, ..*dot }
+            };
+            row.dots[1] = row.dots[0].as_ref().map(larger);
+        }
+        let drawing = plot.drawing();
+        assert_legible(&drawing);
+        let ends = |group: &str| {
+            let own = drawing.notes.iter().filter(|note| note.series == group).map(|note| note.at.0);
+            own.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)))
+        };
+        let [first, second, third] = ["1 threads", "2 threads", "3 threads"].map(ends);
+        assert!(first.1 < second.0 && second.1 < third.0, "{first:?} {second:?} {third:?}");
+        let width = |(low, high): (f64, f64)| high - low;
+        assert!((width(first) - width(second)).abs() < 1e-6, "{first:?} {second:?}");
+        assert!(says(&drawing, "1 threads") && says(&drawing, "3 threads"));
+    }
+}
+
 #[test]
 fn dots_without_a_place_are_counted() {
     let mut plot = dots(3, 1, Axis::log("s"));

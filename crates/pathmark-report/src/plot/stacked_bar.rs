@@ -9,6 +9,7 @@ use super::font;
 use super::frame::{self, GAP, TICK, WIDTH};
 use super::legend::{self, LegendEntry, Sample};
 use super::style::{Colour, INK, LEADING, MARGIN, MUTED, PAPER, SMALL_SIZE, TEXT_SIZE};
+use super::title::Title;
 
 /// Largest width of a row's name; longer ones are broken.
 const WIDEST: f64 = 260.0;
@@ -63,8 +64,7 @@ impl StackRow {
 /// The chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StackedBars {
-    /// The result, in one line.
-    pub title: String,
+    pub title: Title,
     /// Workload, machine; may be empty.
     pub subtitle: String,
     /// Remarks below the chart; may be empty.
@@ -116,7 +116,7 @@ impl StackedBars {
 
 impl Figure for StackedBars {
     fn drawing(&self) -> Drawing {
-        let mut drawing = Drawing::new(&self.title, WIDTH, 0.0);
+        let mut drawing = Drawing::new(self.title.head(), WIDTH, 0.0);
         let top = frame::words_above(&mut drawing, &self.title, &self.subtitle) + 12.0;
         let names: Vec<Vec<String>> = self.rows.iter().map(|row| font::wrap(&row.name, SMALL_SIZE, WIDEST)).collect();
         let widest = names.iter().flatten().map(|line| font::width(line, SMALL_SIZE)).fold(0.0, f64::max);
@@ -168,7 +168,7 @@ mod tests {
             pieces: own.iter().map(piece).collect(),
         };
         StackedBars {
-            title: "Static blocks lose a quarter".to_string(),
+            title: "Static blocks lose a quarter".into(),
             subtitle: "cornell; ".repeat(30),
             caption: "A caption of some length. ".repeat(8),
             axis: Axis::linear("share, %").including([100.0]),

@@ -1,6 +1,6 @@
 //! Tests of whole figures: nothing is clipped, overlaps or fails, and the bytes are the same each time.
 
-use super::drawing::{Align, Mark, Text};
+use super::drawing::{Align, Mark, Part, PartKind, Text};
 use super::style::{GRID, Look};
 use super::{
     Axis, Cell, ColourBar, ContactSheet, Curve, Drawing, Figure, LineChart, Overlay, Point, Scale, Series, Spread,
@@ -18,6 +18,7 @@ fn speedups(count: usize) -> LineChart {
     let mut chart = LineChart::new("Speedup <against> threads & more", x, y, series);
     chart.subtitle = "cornell; ".repeat(30);
     chart.caption = "A caption of some length. ".repeat(8);
+    chart.named_at_ends = false;
     chart.overlays = vec![
         Overlay::guide("ideal", Curve::Line { intercept: 0.0, slope: 1.0 }),
         Overlay::fit("a fit with a long annotation\nover two lines", Curve::Line { intercept: 0.1, slope: 0.8 }, 0),
@@ -103,6 +104,39 @@ fn text_is_legible_and_the_legend_beside_the_data() {
         let legend = drawing.texts().filter(|text| text.text.starts_with("strategy-number"));
         assert!(legend.map(|text| text.bounds()[0]).all(|left| left > data_ends));
     }
+}
+
+/// The series that the legends of a drawing name, from top to bottom.
+fn legend_parts(drawing: &Drawing) -> Vec<&str> {
+    let legends = drawing.parts.iter().filter(|part| part.kind == PartKind::Legend);
+    legends.map(|part| part.series.as_str()).collect()
+}
+
+/// Lines that end in the order of their numbers, with a guide above them and a fit that goes with the first line.
+#[test]
+fn lines_are_named_at_their_ends_where_the_names_fit() {
+    let named = |count: usize| {
+        let fit = Overlay::fit("fit", Curve::Line { intercept: 0.1, slope: 0.8 }, 0);
+        let overlays = vec![Overlay::guide("ideal", Curve::Line { intercept: 0.0, slope: 1.0 }), fit];
+        LineChart { named_at_ends: true, overlays, ..speedups(count) }.drawing()
+    };
+    let drawing = named(8);
+    assert_legible(&drawing);
+    assert!(says(&drawing, "strategy-number-0 (fit)"));
+    let names: Vec<String> = (0..8).map(|i| format!("strategy-number-{i}")).collect();
+    let expected: Vec<&str> = std::iter::once("ideal").chain(names.iter().map(String::as_str)).collect();
+    assert_eq!(legend_parts(&drawing), expected);
+    // A reader who switches the first line off switches its fit off.
+    let is_of = |part: &Part, name: &str| part.kind == PartKind::Series && part.series == name;
+    let of = |name: &str| drawing.parts.iter().filter(|part| is_of(part, name)).count();
+    assert_eq!((of("strategy-number-0"), of("fit")), (2, 0));
+    // Forty names do not fit.
+    assert!(!says(&named(40), "strategy-number-0 (fit)"));
+    assert_legible(&named(40));
+    // A line without a point has no end.
+    let mut empty = LineChart { named_at_ends: true, ..speedups(2) };
+    empty.series[1].points.clear();
+    assert!(says(&empty.drawing(), "strategy-number-1 (no data)"));
 }
 
 #[test]
