@@ -4,7 +4,7 @@ use super::block::Block;
 use super::figures::blocks;
 use super::page::table::Table;
 use super::plot::drawing::Note;
-use super::tests::{results, row, svg, table, words};
+use super::tests::{self, results, row, svg, words};
 use crate::measure::Record;
 
 /// The values that the figure of that name draws.
@@ -236,7 +236,7 @@ fn errors_under_a_time_limit_are_over_all_seeds() {
         blocks(&results(&["equal-time"], "", rows).unwrap()).unwrap()
     };
     let blocks = of(0.01);
-    let shown: Vec<Vec<String>> = table(&blocks).rows().collect();
+    let shown: Vec<Vec<String>> = tests::table(&blocks).rows().collect();
     assert_eq!(shown.len(), 2, "{shown:?}");
     assert_eq!(shown[0][..3], ["cornell", "0.5", "bsdf"]);
     assert!(shown[0][3].starts_with("0.141, ") && shown[1][3].starts_with("0.0141, "), "{shown:?}");
