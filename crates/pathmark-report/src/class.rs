@@ -35,7 +35,9 @@ pub(crate) fn members(out: &Path) -> Result<Vec<Member>> {
     }
     let is_alone = found.len() == 1 && found[0].folder.parent() == Some(out);
     if is_alone || found.iter().any(|member| member.student.is_none()) {
-        found.iter_mut().for_each(|member| member.student = None);
+        for member in &mut found {
+            member.student = None;
+        }
     }
     found.sort_by(|a, b| a.folder.cmp(&b.folder));
     Ok(found)
