@@ -178,7 +178,7 @@ fn timelines_are_of_runs_that_nothing_disturbed() {
         let table = super::tests::table(&blocks);
         let place = |head: &str| table.heads().position(|own| own == head).unwrap();
         let own = table.rows().find(|row| row[0].contains("static-blocks")).unwrap();
-        own[place("makespan, ms")].to_string()
+        own[place("makespan, ms")].clone()
     };
     assert_eq!(makespan_ms([""; 3]), "6000.00");
     assert_eq!(makespan_ms(["drift(25 %)", "", ""]), "5000.00");

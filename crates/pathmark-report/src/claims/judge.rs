@@ -203,13 +203,12 @@ impl<'a> Library<'a> {
         if self.experiments.contains_key(&key) {
             return Ok(());
         }
-        let evidence = match report.table(name) {
-            Some(table) => table.read(self.out)?.map(|rows| Evidence::of_table(rows, &table.settings)),
-            None => {
-                let folder = self.out.join(name);
-                let has_rows = has_records(&folder);
-                has_rows.then(|| Results::read(self.lab, self.out, &folder)).transpose()?.map(Evidence::of)
-            }
+        let evidence = if let Some(table) = report.table(name) {
+            table.read(self.out)?.map(|rows| Evidence::of_table(rows, &table.settings))
+        } else {
+            let folder = self.out.join(name);
+            let has_rows = has_records(&folder);
+            has_rows.then(|| Results::read(self.lab, self.out, &folder)).transpose()?.map(Evidence::of)
         };
         self.experiments.insert(key, evidence);
         Ok(())
@@ -233,7 +232,7 @@ impl<'a> Library<'a> {
                 let Some(evidence) = evidence else { return Ok(None) };
                 let of_table = report.table(experiment).map(|table| table.path(self.out));
                 let source = of_table.unwrap_or_else(|| records_path(&self.out.join(experiment)));
-                self.rows(evidence, source, rows, test)
+                part_of_rows(evidence, source, rows, test)
             }
             Statistic::Case(Cases { ids }) => {
                 Ok(of_table(self.failed_cases(ids), cases_file::FOLDER, cases_file::FILE))
@@ -242,32 +241,6 @@ impl<'a> Library<'a> {
                 Ok(of_table(self.price(guard, *column), guard_prices::FOLDER, guard_prices::FILE))
             }
         }
-    }
-
-    /// The rows at the report's own size, or else all rows with the conditions in which they differ.
-    fn rows<'b>(
-        &self,
-        evidence: &'b Evidence,
-        source: PathBuf,
-        rows: &Conditions,
-        test: &Test,
-    ) -> Result<Option<Part<'b>>> {
-        for is_comparable in [true, false] {
-            let Some(query) = query(test, is_comparable) else { break };
-            let Some(alone) = measure(&[evidence], query)? else { continue };
-            let own: Vec<_> = evidence.rows(rows).filter(|item| query.admits(item.columns)).collect();
-            let columns: Vec<&Columns> = own.iter().map(|item| item.columns).collect();
-            let started: Vec<&str> = own.iter().map(Item::started_utc).collect();
-            let first = started.iter().min().filter(|first| !first.is_empty());
-            return Ok(Some(Part {
-                source,
-                alone,
-                rows: Some(evidence),
-                differences: differences(&test.comparable_if, &columns),
-                started_utc: first.map(ToString::to_string),
-            }));
-        }
-        Ok(None)
     }
 
     /// The number of these hard cases that failed, if all of them were tried.
@@ -287,6 +260,31 @@ impl<'a> Library<'a> {
         };
         Some(Measurement::of_table(value, Interval::between(low, high, guard_prices::LEVEL), 1, "price list"))
     }
+}
+
+/// The rows at the report's own size, or else all rows with the conditions in which they differ.
+fn part_of_rows<'a>(
+    evidence: &'a Evidence,
+    source: PathBuf,
+    rows: &Conditions,
+    test: &Test,
+) -> Result<Option<Part<'a>>> {
+    for is_comparable in [true, false] {
+        let Some(query) = query(test, is_comparable) else { break };
+        let Some(alone) = measure(&[evidence], query)? else { continue };
+        let own: Vec<_> = evidence.rows(rows).filter(|item| query.admits(item.columns)).collect();
+        let columns: Vec<&Columns> = own.iter().map(|item| item.columns).collect();
+        let started: Vec<&str> = own.iter().map(Item::started_utc).collect();
+        let first = started.iter().min().filter(|first| !first.is_empty());
+        return Ok(Some(Part {
+            source,
+            alone,
+            rows: Some(evidence),
+            differences: differences(&test.comparable_if, &columns),
+            started_utc: first.map(ToString::to_string),
+        }));
+    }
+    Ok(None)
 }
 
 /// The place of an experiment's rows, or of a table of the report's ledger.
