@@ -19,7 +19,7 @@ const FILE: &str = "grade.toml";
 /// `pathmark grade target/release/my-program --json grade.json`
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Programs that add strategies: pathmark::main(Lab::new().strategy(ENTRY))
+    /// Programs that add strategies: `pathmark::main(Lab::new().strategy(ENTRY))`
     #[arg(required = true, value_name = "PROGRAM")]
     programs: Vec<PathBuf>,
     /// Folder for the rows and the page of each program; `pathmark report DIR` puts all on one page
