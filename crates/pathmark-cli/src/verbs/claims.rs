@@ -27,15 +27,23 @@ pub(crate) struct Arguments {
     /// findings of DIR/findings.toml by their intervals, claims by their verdicts. Other bits exit with code 1
     #[arg(long, value_name = "DIR", conflicts_with_all = ["out", "report", "ledger", "strict"])]
     compare: Option<PathBuf>,
+    #[command(flatten)]
+    form: Form,
+    /// Exit with code 1 if a verdict differs from the expected one, or if its bound is not older than the rows that it judges
+    #[arg(long)]
+    strict: bool,
+}
+
+/// The form of what is printed.
+#[derive(Args)]
+#[group(multiple = false)]
+struct Form {
     /// Print an array of objects
     #[arg(long)]
     json: bool,
     /// Print the text that `--out` writes
-    #[arg(long, conflicts_with = "json")]
-    markdown: bool,
-    /// Exit with code 1 if a verdict differs from the expected one, or if its bound is not older than the rows that it judges
     #[arg(long)]
-    strict: bool,
+    markdown: bool,
 }
 
 /// A verdict for other programs.
@@ -77,7 +85,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
         }
     }
     if arguments.plan {
-        return plan(lab, &reports, arguments.json);
+        return plan(lab, &reports, arguments.form.json);
     }
     check_folders(arguments)?;
     if let Some(out) = &arguments.out {
@@ -89,9 +97,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
         create_folder("out", out)?;
         listing.save(&answers, out)?;
     }
-    if arguments.json {
+    if arguments.form.json {
         print_json(&answers.iter().map(row).collect::<Vec<_>>())?;
-    } else if arguments.markdown {
+    } else if arguments.form.markdown {
         print(listing.markdown_of(&answers, Path::new(".")).trim_end())?;
     } else {
         print(&answers.iter().map(line).collect::<Vec<String>>().join("\n"))?;
@@ -128,7 +136,7 @@ fn compare(arguments: &Arguments, earlier: &Path, lab: &Arc<Lab>) -> Result<()> 
         return Err(InputError::new("compare", earlier.display().to_string(), "there is no such folder").into());
     }
     let found = Agreement::of(lab, &arguments.folders, earlier)?;
-    if arguments.json {
+    if arguments.form.json {
         print_json(&found)?;
     } else {
         print(&found.in_words())?;

@@ -29,14 +29,10 @@ pub(super) fn plan(lab: &Arc<Lab>, reports: &[Report], as_json: bool) -> Result<
     for (report, claim) in reports.iter().flat_map(|report| report.claims.iter().map(move |claim| (report, claim))) {
         let (command, plan, why) = match report.needs(claim) {
             Needs::Experiment(name) => {
-                let planned = match plans.get(&name) {
-                    Some(planned) => planned.clone(),
-                    None => {
-                        let planned = plan_of(lab, &name, &mut prices)?;
-                        plans.entry(name.clone()).or_insert(planned).clone()
-                    }
-                };
-                match planned {
+                if !plans.contains_key(&name) {
+                    plans.insert(name.clone(), plan_of(lab, &name, &mut prices)?);
+                }
+                match plans.get(&name).cloned().flatten() {
                     Some((command, plan)) => (command, Some(plan), String::new()),
                     None => (String::new(), None, format!("no experiment is called {name}")),
                 }
