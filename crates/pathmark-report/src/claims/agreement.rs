@@ -5,8 +5,8 @@ use super::judge::{Answer, judge};
 use super::measurement::{Measurement, Scale};
 use super::verdict::Verdict;
 use crate::analysis::Interval;
-use crate::class::{Member, members};
 use crate::error::Result;
+use crate::class::{Member, members};
 use crate::experiment::{read_records, records_path};
 use crate::lab::Lab;
 use crate::measure::ImageKey;
@@ -24,11 +24,7 @@ const REPORTS: &str = "reports";
 /// Things that both results have: how many there are, and those that differ.
 #[derive(Debug, Default, Serialize)]
 struct Shared {
-<<<<<<< HEAD
-    count: usize,
-=======
     in_both: usize,
->>>>>>> wd/main
     /// Each in a line.
     differing: Vec<String>,
     /// How many the earlier results have and these lack.
@@ -103,13 +99,8 @@ impl Agreement {
     pub fn in_words(&self) -> String {
         let Self { rows, experiments, images, findings, same_side, verdicts, earlier } = self;
         let earlier = earlier.display();
-<<<<<<< HEAD
-        let agreeing = |own: &Shared| format!("{} of {}", own.count - own.differing.len(), own.count);
-        let overlapping = findings.count - findings.differing.len() - same_side.len();
-=======
         let agreeing = |own: &Shared| format!("{} of {}", own.in_both - own.differing.len(), own.in_both);
         let overlapping = findings.in_both - findings.differing.len() - same_side.len();
->>>>>>> wd/main
         let more = match (findings.lacking, verdicts.lacking) {
             (0, 0) => "More rows would add nothing to this comparison.".to_string(),
             (findings, verdicts) => format!(
@@ -164,11 +155,7 @@ impl Images {
         let both: Vec<_> = both.collect();
         let differing = both.iter().filter(|(_, own, other)| own != other);
         Shared {
-<<<<<<< HEAD
-            count: both.len(),
-=======
             in_both: both.len(),
->>>>>>> wd/main
             differing: differing.map(|(key, own, other)| format!("{key}: checksum {own} instead of {other}")).collect(),
             lacking: earlier.checksums.len() - both.len(),
         }
@@ -193,11 +180,7 @@ fn of_findings(answers: &[Vec<Answer<'_>>; 2]) -> (Shared, Vec<String>) {
             found.lacking += 1;
             continue;
         };
-<<<<<<< HEAD
-        found.count += 1;
-=======
         found.in_both += 1;
->>>>>>> wd/main
         let told = |how: &str| {
             let (here, there) = (own.measured(), earlier.measured());
             format!("finding {}, {}: {here} here, {there} there, {how}", own.claim.id, own.claim.claim)
@@ -218,11 +201,7 @@ fn of_verdicts(answers: &[Vec<Answer<'_>>; 2]) -> Shared {
             found.lacking += 1;
             continue;
         }
-<<<<<<< HEAD
-        found.count += 1;
-=======
         found.in_both += 1;
->>>>>>> wd/main
         if own.verdict != earlier.verdict {
             let (id, says) = (own.claim.id, &own.claim.claim);
             found.differing.push(format!("claim {id}, {says}: {} here, {} there", own.verdict, earlier.verdict));
