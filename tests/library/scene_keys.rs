@@ -64,7 +64,7 @@ fn scene_of(table: &str, fields: &[String]) -> String {
     let object = "about = ''\n[[objects]]\nname = 'a'\n";
     match table.split('.').collect::<Vec<_>>().as_slice() {
         [""] => format!("{lines}\n"),
-        ["objects"] | ["point-lights"] => format!("about = ''\n[[{table}]]\n{lines}\n"),
+        ["objects" | "point-lights"] => format!("about = ''\n[[{table}]]\n{lines}\n"),
         ["objects", field, name] => format!("{object}{field} = {{ {name} = {{ {inline} }} }}\n"),
         _ => format!("about = ''\n[{table}]\n{lines}\n"),
     }
