@@ -26,7 +26,7 @@ impl LogRatio {
     }
 }
 
-/// What two measurements of a ratio say about each other.
+/// The verdict of two measurements of a ratio.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Agreement {

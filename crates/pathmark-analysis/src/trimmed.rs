@@ -69,7 +69,7 @@ mod tests {
     }
 
     /// Of 1 to 16, two at either end are trimmed: the mean of 3 to 14 is 8.5. Winsorized squares: 2 (.5² + 1.5² + ... + 4.5²) +
-    /// 6 times 5.5² = 264, over 12 times 11. What lies farther out changes nothing.
+    /// 6 times 5.5² = 264, over 12 times 11. Values farther out change nothing.
     #[test]
     fn an_eighth_at_either_end_does_not_count() {
         let mut values: Vec<f64> = (1..=16).map(f64::from).collect();

@@ -51,7 +51,7 @@ pub enum Reproduction {
     NotReproduced,
     /// How many more processes would tell; `None` if theirs are too few.
     CannotTell(Option<usize>),
-    /// What this machine lacks, or why the rows here failed.
+    /// Why there are no rows here: something that this machine lacks, or the error of its rows.
     OtherHardware(String),
 }
 
