@@ -47,7 +47,7 @@ use std::collections::BTreeSet;
 use std::iter::once;
 use std::path::{Path, PathBuf};
 
-/// What answers a claim.
+/// The evidence that answers a claim.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Needs<'a> {
     /// Rows of that experiment.
@@ -300,7 +300,7 @@ impl Report {
         texts.iter().map(|(name, text)| Self::from_text(&format!("claims/{name}.toml"), text)).collect()
     }
 
-    /// What answers a claim of this ledger.
+    /// The evidence that answers a claim of this ledger.
     pub fn needs(&self, claim: &Claim) -> Needs<'_> {
         match claim.test().map(|test| &test.statistic) {
             Err((_, why)) => Needs::Nothing(why.to_string()),
