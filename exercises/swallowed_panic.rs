@@ -1,7 +1,7 @@
 //! **Symptom.** An assertion fails in one job. The terminal shows its message, but the program goes on, writes an image
 //! with black rows, and ends with exit code 0.
 //!
-//! **Hint.** `join` returns the panic of a thread. [`Panics`](pathmark_strategy::Panics) stops the other threads, too.
+//! **Hint.** `join` returns the panic of a thread. [`Panics`] stops the other threads, too.
 
 use crate::prelude::*;
 
