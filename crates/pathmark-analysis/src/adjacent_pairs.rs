@@ -8,7 +8,7 @@
 //!
 //! The value of a process is the median of its logarithms of ratios, because single pairs are disturbed on one side. Of
 //! many processes a few may be disturbed for their whole life; from sixteen on, the eighth at either end does not count
-//! ([`centre`]).
+//! (`trimmed.rs`).
 
 use crate::agreement::LogRatio;
 use crate::interval::{Estimate, Interval, is_level};

@@ -72,7 +72,7 @@ pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
     write_page(&sections(lab, out)?, out)
 }
 
-/// Like [`write`], but also writes a page for each experiment, and a list of them, into the folder `pages`; returns the
+/// Like [`write()`], but also writes a page for each experiment, and a list of them, into the folder `pages`; returns the
 /// list's path. `option` is the option that asked for them. Refuses to replace other files.
 pub fn write_pages(option: &str, lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
     let mut sections = sections(lab, out)?;
