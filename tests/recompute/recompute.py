@@ -109,12 +109,26 @@ def median_ends(values, level):
     return found
 
 
-def typical(values, level, is_ratio):
-    """From six units on the median, below that the (geometric) mean."""
+def of_pairs(values, level):
+    """The geometric mean of processes; from sixteen on without the eighth at either end (Tukey and McLaughlin 1963)."""
+    ordered = sorted(map(math.log, values))
+    n = len(ordered)
+    cut = n // 8 if n >= 16 else 0
+    kept = ordered[cut : n - cut]
+    winsorized = [min(max(value, kept[0]), kept[-1]) for value in ordered]
+    error = math.sqrt(variance(winsorized) * (n - 1) / len(kept) / (len(kept) - 1))
+    value, half = fmean(kept), t_quantile(level, len(kept) - 1) * error
+    return Estimate(math.exp(value), math.exp(value - half), math.exp(value + half))
+
+
+def typical(values, level, is_ratio, in_pairs=False):
+    """Ratios of adjacent pairs: as figures have them. Others: from six units on the median, below the (geometric) mean."""
     if not values:
         return None
     if len(values) > 1 and len(set(values)) == 1:
         return Estimate(values[0], values[0], values[0])
+    if in_pairs and len(values) >= 3:
+        return of_pairs(values, level)
     if len(values) >= 6 and (ends := median_ends(values, level)):
         return Estimate(median(values), *ends)
     to, back = (math.log, math.exp) if is_ratio else (float, float)
@@ -175,7 +189,7 @@ def unit_of(unit, run, row):
     return {"repetition": (run, row["seed"], row["repetition"]), "seed": row["seed"], "scene": row["scene"]}[unit]
 
 
-def of_units(values, unit, level, is_ratio):
+def of_units(values, unit, level, is_ratio, in_pairs=False):
     """`values`: (run, row, value). Median over the pairs of a cell, mean over cells, typical over units."""
     units = defaultdict(lambda: defaultdict(list))
     for run, row, value in values:
@@ -185,10 +199,11 @@ def of_units(values, unit, level, is_ratio):
     runs = {key[0] for key in means} if unit == "repetition" else set()
     if len(runs) >= 6:
         means = {run: back(fmean([to(v) for key, v in means.items() if key[0] == run])) for run in runs}
-    return typical(list(means.values()), level, is_ratio)
+    return typical(list(means.values()), level, is_ratio, in_pairs and unit == "repetition" and len(runs) < 6)
 
 
 def ratios(rows, over, named, column):
+    """Ratios of rows and their partners, and whether these are of adjacent pairs."""
     free = set(named).union(*(FOLLOWERS.get(name, []) for name in named))
     kept = [name for name in SETTINGS if name not in free]
     for keeps_pairs in (True, False):
@@ -206,7 +221,8 @@ def ratios(rows, over, named, column):
         found = [(key[0], row, value / below[key[:4]]) for key, (row, value) in keyed(rows).items() if key[:4] in below]
         if found:
             break
-    return [(run, row, ratio) for run, row, ratio in found if 0 < ratio < math.inf]
+    in_pairs = keeps_pairs and any(row.get("pair", "") for _, row, _ in found)
+    return [(run, row, ratio) for run, row, ratio in found if 0 < ratio < math.inf], in_pairs
 
 
 def per_seed(rows, column):
@@ -291,10 +307,10 @@ def measure(claim, runs, comparable, level):
         return Estimate(*(sum(values),) * 3) if values else None
     if kind in ("paired-ratio", "speedup"):
         named = [*wanted, *claim["over"]]
-        found = ratios(rows, over, named, column or "makespan_s")
+        found, in_pairs = ratios(rows, over, named, column or "makespan_s")
         if kind == "speedup":
             found = [(run, row, 1 / ratio) for run, row, ratio in found]
-        return of_units(found, unit, level, True)
+        return of_units(found, unit, level, True, in_pairs)
     if kind == "exponent":
         return exponent(rows, claim["x"], claim["y"], unit, level)
     if kind == "checksum":

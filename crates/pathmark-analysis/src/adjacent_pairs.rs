@@ -14,6 +14,7 @@ use crate::agreement::LogRatio;
 use crate::interval::{Estimate, Interval, is_level};
 use crate::mean::{Moments, t_quantile};
 use crate::quantile::median;
+pub use crate::trimmed::FEWEST as FEWEST_TRIMMED;
 use crate::trimmed::{Centre, centre, degrees_of_freedom};
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};

@@ -9,7 +9,7 @@
 use super::mean::Moments;
 
 /// Fewer values are not trimmed: where one value is an eighth, a trimmed mean costs more precision than it gains.
-const FEWEST: usize = 16;
+pub const FEWEST: usize = 16;
 
 /// A centre of values, for Student's t.
 #[derive(Debug, Clone, Copy, PartialEq)]

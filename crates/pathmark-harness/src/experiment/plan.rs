@@ -2,7 +2,8 @@
 //!
 //! The pilot renders each kind of image once, on one thread and at a small size, to measure the time of a sample. A
 //! cell's time is its samples times that, divided by the processors that its threads can use. This assumes an ideal
-//! speedup and ignores the overhead of schedules.
+//! speedup and ignores the overhead of schedules. Threads that draw from one generator wait for each other, so the pilot
+//! of such a cell has its schedule.
 
 use super::cell::Cell;
 use super::pairs::{LONG_S, affordable};
@@ -12,6 +13,7 @@ use crate::error::Result;
 use crate::kernel::Spec;
 use crate::lab::Lab;
 use crate::measure::{Settings, available_threads, batch_runs};
+use crate::sampling::is_deterministic;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -67,7 +69,7 @@ impl<'a> Prices<'a> {
 
     /// Seconds of a sample of these settings on one processor.
     fn sample_s(&mut self, settings: &Settings) -> Result<f64> {
-        let kind = small(settings);
+        let kind = pilot(settings);
         if let Some(seconds) = self.kinds.get(&kind) {
             return Ok(*seconds);
         }
@@ -81,10 +83,12 @@ impl<'a> Prices<'a> {
         Ok(seconds)
     }
 
-    /// Renders a kind of image and returns the seconds of a sample; `spp` is a number of samples that it can have.
+    /// Renders a kind of image and returns the seconds of a sample on one processor; `spp` is a number of samples that it can
+    /// have.
     fn measure(&self, kind: &Settings, spp: u32) -> Result<f64> {
         let with = |spp: u32| self.lab.prepare(Settings { spp, ..kind.clone() });
-        let samples = |spp: u32| f64::from(kind.spec.width) * f64::from(kind.spec.height) * f64::from(spp);
+        let processors = kind.threads.min(available_threads()) as f64;
+        let samples = |spp: u32| f64::from(kind.spec.width) * f64::from(kind.spec.height) * f64::from(spp) / processors;
         let fewest = with(spp)?.fewest_spp();
         let setup = with(fewest)?;
         // Without the GPU that it needs, a cell renders nothing.
@@ -126,6 +130,16 @@ pub(super) fn small(settings: &Settings) -> Settings {
     let spec = Spec { width: WIDTH, height: height.clamp(1, 4 * u64::from(WIDTH)) as u32, seed: 0, ..spec.clone() };
     let schedule = Settings { strategy: "serial".to_string(), threads: 1, ..Settings::default() };
     Settings { scene: settings.scene.clone(), spp: 0, spec, ..schedule }
+}
+
+/// The run that tells the time of a cell's samples: [`small`], and with a generator that threads share, by the cell's schedule.
+fn pilot(settings: &Settings) -> Settings {
+    let kind = small(settings);
+    if is_deterministic(&settings.spec.sampler) || settings.ranks.is_some() {
+        return kind;
+    }
+    let Settings { strategy, threads, decomposition, .. } = settings.clone();
+    Settings { strategy, threads, decomposition, ..kind }
 }
 
 impl Sweep<'_> {
@@ -184,6 +198,21 @@ mod tests {
     use super::*;
     use crate::experiment::{Definition, Options};
     use crate::files::Files;
+
+    /// Threads wait for a generator that they share, which one thread alone would not show.
+    #[test]
+    fn a_shared_generator_is_tried_with_the_threads_of_its_cell() {
+        let of = |sampler: &str, ranks: Option<u16>| {
+            let spec = Spec { sampler: sampler.to_string(), ..Spec::default() };
+            let schedule = Settings { strategy: "pool".to_string(), threads: 5, ranks, ..Settings::default() };
+            let found = pilot(&Settings { spec, ..schedule });
+            (found.strategy, found.threads)
+        };
+        assert_eq!(of("locked", None), ("pool".to_string(), 5));
+        for alone in [of("independent", None), of("locked", Some(2))] {
+            assert_eq!(alone, ("serial".to_string(), 1));
+        }
+    }
 
     /// A machine without the GPU that a cell needs can plan it, as it can run it.
     #[test]

@@ -182,17 +182,21 @@ impl<'a> Rows<'a> {
                     let below = per.as_ref().map_or(Some(1.0), |per| number(item.columns, per))?;
                     Some(sum / below).filter(|value| value.is_finite())
                 };
-                self.typical(own.iter().filter_map(|item| Some((*item, value(item)?))), Scale::Linear)
+                self.typical(own.iter().filter_map(|item| Some((*item, value(item)?))), Scale::Linear, false)
             }
             Kind::Count { column } => {
                 let counts: Vec<f64> = own.iter().filter_map(|item| number(item.columns, column)).collect();
                 Measurement::exact(counts.iter().sum(), counts.len(), "row")
             }
-            Kind::PairedRatio { column, over } => self.typical(self.ratios(over, column)?, Scale::Logarithmic),
+            Kind::PairedRatio { column, over } => {
+                let (ratios, are_of_pairs) = self.ratios(over, column)?;
+                self.typical(ratios, Scale::Logarithmic, are_of_pairs)
+            }
             Kind::Speedup { over, column } => {
                 let column = column.as_ref().map_or("makespan_s", |column| column);
-                let ratios = self.ratios(over, column)?.into_iter();
-                self.typical(ratios.map(|(item, ratio)| (item, 1.0 / ratio)), Scale::Logarithmic)
+                let (ratios, are_of_pairs) = self.ratios(over, column)?;
+                let speedups = ratios.into_iter().map(|(item, ratio)| (item, 1.0 / ratio));
+                self.typical(speedups, Scale::Logarithmic, are_of_pairs)
             }
             Kind::Exponent { x, y } => self.exponent(x, y),
             Kind::RmseSlope {} => {
@@ -221,8 +225,14 @@ impl<'a> Rows<'a> {
         Ok(found)
     }
 
-    /// The typical value of units: each has the mean over its cells of the median of the cell's pairs.
-    fn typical(&self, values: impl IntoIterator<Item = (Item<'a>, f64)>, scale: Scale) -> Option<Measurement> {
+    /// The typical value of units: each has the mean over its cells of the median of the cell's pairs. Ratios of adjacent pairs
+    /// have the rule of figures and tables.
+    fn typical(
+        &self,
+        values: impl IntoIterator<Item = (Item<'a>, f64)>,
+        scale: Scale,
+        are_of_pairs: bool,
+    ) -> Option<Measurement> {
         let Query { unit, level, .. } = self.query;
         let mut units: BTreeMap<Key, BTreeMap<(usize, &str), Vec<f64>>> = BTreeMap::new();
         for (item, value) in values {
@@ -241,13 +251,15 @@ impl<'a> Rows<'a> {
             return Measurement::typical(&values, scale, self.stopping, level, "run");
         }
         let values: Vec<f64> = runs.into_values().flatten().collect();
-        Measurement::typical(&values, scale, self.stopping, level, unit.noun())
+        let of_pairs = are_of_pairs && unit == Unit::Repetition && self.stopping == Stopping::Fixed;
+        let of_pairs = of_pairs.then(|| Measurement::of_pairs(&values, level, unit.noun())).flatten();
+        of_pairs.or_else(|| Measurement::typical(&values, scale, self.stopping, level, unit.noun()))
     }
 
     /// Ratios of a column between rows and their partners in `over`, in the same run and the same pair of one process; if no
     /// rows are of pairs, or those of other cells, in the same repetition. Partners may differ only in columns that the
-    /// conditions name, and in those that change with them.
-    fn ratios(&self, over: &Conditions, column: &str) -> Result<Vec<(Item<'a>, f64)>> {
+    /// conditions name, and in those that change with them. Also returns whether the ratios are of adjacent pairs.
+    fn ratios(&self, over: &Conditions, column: &str) -> Result<(Vec<(Item<'a>, f64)>, bool)> {
         let settings = self.runs.first().map_or(&[][..], |run| &run.settings);
         let identity = identity(self.query.rows, over, settings);
         let key = |item: &Item<'_>, turn: Turn| {
@@ -258,7 +270,7 @@ impl<'a> Rows<'a> {
             InputError::new("cell", &item.row.cell, problem)
         };
         let below: Vec<Item<'_>> = items(self.runs).filter(|item| over.admit(item.columns)).collect();
-        let mut found = Vec::new();
+        let (mut found, mut are_of_pairs) = (Vec::new(), false);
         for keeps_pairs in [true, false] {
             let [above, below] = [&self.own, &below].map(|items| {
                 let values = per_turn(items, column, keeps_pairs).into_iter();
@@ -266,11 +278,12 @@ impl<'a> Rows<'a> {
             });
             found = ratios_by(above, below, of_two, |(_, value)| Some(value))?;
             if !found.is_empty() {
+                are_of_pairs = keeps_pairs && found.iter().any(|((item, _), _)| item.row.pair.is_some());
                 break;
             }
         }
         let ratios = found.into_iter().map(|((item, _), ratio)| (item, ratio));
-        Ok(ratios.filter(|(_, ratio)| ratio.is_finite() && *ratio > 0.0).collect())
+        Ok((ratios.filter(|(_, ratio)| ratio.is_finite() && *ratio > 0.0).collect(), are_of_pairs))
     }
 
     /// The exponent of y against x: of a line through all processes, each a point; for units other than repetitions the

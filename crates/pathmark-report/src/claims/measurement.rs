@@ -1,6 +1,6 @@
 //! Measured values, each with its interval, the number of independent units behind it, and the rule that made the interval.
 
-use crate::analysis::adjacent_pairs::FEWEST_PROCESSES;
+use crate::analysis::adjacent_pairs::{FEWEST_PROCESSES, FEWEST_TRIMMED, paired_ratio};
 use crate::analysis::mean::{Moments, fewest_values, geometric_interval, t_interval, t_quantile};
 use crate::plot::number::{fixed, is_plain, short};
 use crate::prelude::*;
@@ -38,6 +38,8 @@ pub(super) enum Rule {
     Median,
     /// The mean, or the geometric mean of ratios, with the interval of Student's t.
     Mean,
+    /// The ratio of adjacent pairs over processes, as figures and tables have it.
+    Pairs,
     /// A ratio of two means with the interval of Student's t and Welch's degrees of freedom.
     Welch,
     /// A line through points with the interval of Student's t.
@@ -91,6 +93,16 @@ impl Measurement {
             Scale::Logarithmic => geometric_interval(values, level),
         };
         Some(of(scale.mean(values)?, of_few.map(|few| few.interval), Rule::Mean))
+    }
+
+    /// The ratio from the values of some processes that ran pairs; see [`paired_ratio`].
+    pub(super) fn of_pairs(processes: &[f64], level: f64, noun: &'static str) -> Option<Self> {
+        let each: Vec<Vec<f64>> = processes.iter().map(|value| vec![*value]).collect();
+        let found = paired_ratio(&each, level)?;
+        let Estimate { value, interval } = found.ratio;
+        let (rule, scale) = (Rule::Pairs, Scale::Logarithmic);
+        let deviation = Some(found.spread.between);
+        Some(Self { value, interval: Some(interval), units: found.processes, noun, rule, deviation, scale })
     }
 
     /// An estimate that has an interval of its own.
@@ -183,6 +195,12 @@ impl Measurement {
             Rule::Mean if self.scale == Scale::Logarithmic => {
                 format!("geometric mean of {units}, interval of Student's t of logarithms")
             }
+            Rule::Pairs if self.units >= FEWEST_TRIMMED => {
+                format!(
+                    "geometric mean of {units} without the eighth at either end, interval of Student's t of logarithms"
+                )
+            }
+            Rule::Pairs => format!("geometric mean of {units}, interval of Student's t of logarithms"),
             Rule::Mean => format!("mean of {units}, interval of Student's t"),
             Rule::Welch => format!("{units} on both sides, interval of Student's t with Welch's degrees of freedom"),
             Rule::Line => format!("line through {units}, interval of Student's t"),

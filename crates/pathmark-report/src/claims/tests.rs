@@ -515,6 +515,34 @@ fn pairs_that_share_something_are_one_unit() {
     assert!((found.value - 2.0 / 1.115).abs() < 1e-3, "{found:?}");
 }
 
+/// Logarithms -3d ... 3d of seven processes and one of 12d: their mean is 1.5d, their median .5d. Without pairs the claim takes
+/// the median of the repetitions.
+#[test]
+fn a_ratio_of_pairs_is_that_of_figures() {
+    let d = 0.01;
+    let values = [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 12.0].map(|steps| libm::exp(d * steps));
+    let pool = "statistic = \"paired-ratio\"\ncolumn = \"makespan_s\"\nrows = { strategy = \"pool\" }\nover = { strategy = \"serial\" }\nat-least = 0.5";
+    let of = |pair: Option<u32>| {
+        let mut all = Vec::new();
+        for (repetition, value) in (0..).zip(values) {
+            for (strategy, seconds) in [("serial", 1.0), ("pool", value)] {
+                let (strategy, cell) = (strategy.to_string(), strategy.to_string());
+                all.push(Record { repetition, pair, strategy, cell, makespan_s: Some(seconds), ..row() });
+            }
+        }
+        answer(&all, pool).2.unwrap()
+    };
+    let (in_pairs, alone) = (of(Some(0)), of(None));
+    assert_eq!((in_pairs.rule, alone.rule), (Rule::Pairs, Rule::Median));
+    assert!((libm::log(in_pairs.value) - 1.5 * d).abs() < 1e-12, "{in_pairs:?}");
+    assert!((libm::log(alone.value) - 0.5 * d).abs() < 1e-4, "{alone:?}");
+    let figure = crate::analysis::adjacent_pairs::paired_ratio(&values.map(|value| vec![value]), 0.95).unwrap().ratio;
+    let interval = in_pairs.interval.unwrap();
+    assert!((interval.low - figure.interval.low).abs() < 1e-12 && (interval.high - figure.interval.high).abs() < 1e-12);
+    let words = in_pairs.rule_in_words();
+    assert_eq!(words, "geometric mean of 8 repetitions, interval of Student's t of logarithms");
+}
+
 /// Rows that were measured before the claim was fixed judge nothing: its bound may have been chosen by them.
 #[test]
 fn a_bound_younger_than_its_rows_is_told() {
