@@ -2,6 +2,9 @@
 //!
 //! `cargo run --release --example custom_threads -- render cornell --strategy own-threads` renders with it, and
 //! `cargo test --example custom_threads` says whether it keeps the contract.
+//!
+//! An [`Entry`] has a name, a description for `list strategies`, the discipline (how jobs are handed out, which the
+//! simulator replays) and the function that makes the pool from a [`Blueprint`]: threads, and a spawner that starts them.
 
 use std::process::ExitCode;
 use std::sync::Arc;

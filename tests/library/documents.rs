@@ -133,4 +133,14 @@ fn one_command_fills_in_the_address() {
         assert!(sources.iter().all(|line| line.contains(&format!("git = \"{address}\""))), "{name}: {sources:?}");
     }
     assert!(read("CONTRIBUTING.md").contains("address-to-be-chosen.invalid|"));
+    // The command removes the lines that say that there is no address, so each is a whole sentence.
+    const WITHOUT: &str = "no public address yet";
+    assert!(read("CONTRIBUTING.md").contains(&format!("/{WITHOUT}/d")));
+    for name in ["README.md", "Cargo.toml", "examples/pool-template/README.md"] {
+        let text = read(name);
+        let lines: Vec<&str> = text.lines().filter(|line| line.contains(WITHOUT)).collect();
+        let is_whole =
+            |line: &&str| line.trim_start_matches("# ").starts_with("Pathmark has no ") && line.ends_with('.');
+        assert!(lines.len() == 1 && lines.iter().all(is_whole), "{name}: {lines:?}");
+    }
 }

@@ -1,5 +1,6 @@
 //! The commands in the documents run as printed there.
 
+use crate::experiment::TINY;
 use crate::program::{finish, in_memory, pathmark};
 use std::fs;
 use std::path::Path;
@@ -16,10 +17,11 @@ fn blocks(text: &str) -> Vec<(&str, &str)> {
 /// The README's commands in a small size, without those that take an hour, need a feature or run in other tests.
 #[test]
 fn the_commands_of_the_readme_run() {
-    const ELSEWHERE: [&str; 7] = [
+    const ELSEWHERE: [&str; 8] = [
         "pathmark diff",
         "pathmark reproduce",
         "pathmark claims out --compare",
+        "pathmark replicate",
         "pathmark selftest",
         "pathmark run openmp",
         "pathmark run granularity --baseline",
@@ -50,6 +52,23 @@ fn the_commands_of_the_readme_run() {
         commands += 1;
     }
     assert!(commands > 10, "{commands} commands");
+}
+
+/// The shortest ledger of the manual measures its number.
+#[test]
+fn the_ledger_of_the_manual_gives_a_number() {
+    let folder = in_memory();
+    let text = include_str!("../../examples/ledgers/README.md");
+    let ledger = blocks(text).into_iter().map(|(_, block)| block).find(|block| block.starts_with("# paper.toml"));
+    fs::write(folder.path().join("paper.toml"), ledger.expect("a ledger")).unwrap();
+    fs::write(folder.path().join("thread-scaling.toml"), TINY).unwrap();
+    finish(pathmark(folder.path(), &["run", "thread-scaling.toml"])).with_code(0);
+    let judge = ["claims", "out", "--ledger", "paper.toml", "--json"];
+    let told: serde_json::Value =
+        serde_json::from_str(&finish(pathmark(folder.path(), &judge)).with_code(0).out).unwrap();
+    let measured = told[0]["measured"].as_str().unwrap();
+    let speedup: f64 = measured.split(' ').next().unwrap().parse().unwrap();
+    assert!(speedup > 0.0 && measured.contains(" to "), "{told}");
 }
 
 /// Runs the commands of a document as printed, except that images are small and the simulation skips its check of this
@@ -99,7 +118,9 @@ fn every_command_of_the_tutorial_runs() {
     let folder = in_memory();
     let commands = run_all(folder.path(), include_str!("../../docs/tutorial.md"));
     assert!(commands > 12, "{commands} commands");
-    for made in ["blocks.svg", "out/report.html", "out/speedup/figures/speedup.svg", "elsewhere/report.html"] {
+    let made =
+        ["blocks.svg", "out/report.html", "out/speedup/figures/speedup.svg", "draft.tex", "elsewhere/report.html"];
+    for made in made {
         assert!(folder.path().join(made).is_file(), "{made}");
     }
     // The first three images of the tutorial are the same.

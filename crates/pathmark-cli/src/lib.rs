@@ -34,7 +34,9 @@ Examples:
   pathmark simulate rows.csv --workers 1..64                 forecast a traced run on more cores
 
 Measure: reproduce, run, rank, why, diff, price, bursts, grade, report, claims, replicate    Render: render, merge, image
-Look inside: inspect, simulate    Ask: doctor, machine, list, new, contract, selftest, shell";
+Look inside: inspect, simulate    Ask: doctor, machine, list, new, contract, selftest, shell
+
+Exit codes: 0 done, 1 a check failed, 2 the input is wrong, 3 the system refused";
 
 /// A laboratory for scheduling unequal work on many cores, and for what accuracy costs in time.
 #[derive(Parser)]

@@ -37,6 +37,15 @@ fn a_trace_has_a_row_for_each_job_and_can_be_drawn() {
 
     let said = run(folder.path(), &["inspect", "jobs", "run.csv", "-o", "run.svg"]).out;
     assert!(said.contains("6 jobs on 2 workers"), "{said}");
+    // A line for each worker: its times add up to the makespan.
+    let of_workers: Vec<&str> = said.lines().filter(|line| line.starts_with("worker ")).collect();
+    assert_eq!(of_workers.len(), 2, "{said}");
+    for line in of_workers {
+        assert!(line.contains(": 3 jobs, busy "), "{said}");
+        let times = line.split([' ', ',']).filter_map(|word| word.parse::<f64>().ok()).skip(1);
+        let sum: f64 = times.sum();
+        assert!((sum - 1e3 * makespan).abs() < 0.01, "{sum}: {said}");
+    }
     assert!(fs::read_to_string(folder.path().join("run.svg")).unwrap().contains("static-cyclic"));
     run(folder.path(), &["inspect", "jobs", "run.csv", "-o", "run.json"]);
     let events = json(&fs::read_to_string(folder.path().join("run.json")).unwrap());

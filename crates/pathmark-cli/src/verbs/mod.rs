@@ -39,15 +39,15 @@ pub(super) use renamed::with_new_names;
 
 #[derive(Subcommand)]
 pub(super) enum Verb {
-    /// Run all committed experiments: CSV, figures and one report page.
+    /// Run all experiments at one size: rows, figures and one page.
     Reproduce(reproduce::Arguments),
     /// Render a scene.
     Render(render::Arguments),
     /// Merge the parts that `render --shard` or `run --shard` wrote on several machines.
     Merge(merge::Arguments),
-    /// Run one experiment.
+    /// Run one experiment: rows, figures and a page.
     Run(run::Arguments),
-    /// Compare, convert or make images: errors against references, other formats, half-references.
+    /// Measure the error of an image, write it in another format, or render a reference.
     #[command(subcommand)]
     Image(image::Image),
     /// Rank the schedules of an experiment: which can be told apart?
@@ -58,18 +58,18 @@ pub(super) enum Verb {
     Diff(diff::Arguments),
     /// Predict the samples and seconds that an accuracy costs; --verify checks the prediction by rendering.
     Price(price::Arguments),
-    /// Try whether a strategy keeps the contract of all strategies.
+    /// Test whether a strategy keeps the contract: each job runs once, panics reach the caller, no thread is left over.
     Contract(contract::Arguments),
     /// Grade programs with strategies of their own: contract, image, and speedup beside the built-in strategies.
     Grade(grade::Arguments),
-    /// Draw the figures and the page again from the records in a folder, or in the folders of a class.
+    /// Draw the figures and the page again from the rows in a folder, or in the folders of a class.
     Report(report::Arguments),
     /// Replay the jobs of a run on workers that this machine does not have.
     Simulate(simulate::Arguments),
     /// Look into a path, the light by bounces, the search for hits, the jobs of a run or MPI messages.
     #[command(subcommand)]
     Inspect(inspect::Inspect),
-    /// Try the hard cases of numerics, sampling and statistics on this machine.
+    /// Test the hard cases of numerics, sampling and statistics on this machine.
     Selftest(selftest::Arguments),
     /// Compare pools on short parallel regions with gaps: wake latency, and processor time of idle workers.
     Bursts(bursts::Arguments),

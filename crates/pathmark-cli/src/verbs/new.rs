@@ -16,8 +16,11 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Kind {
+    /// Cells to measure and figures to draw, for `run`
     Experiment,
+    /// A scene that overrides parts of another one, for `render`
     Scene,
+    /// A ledger: claims of a paper, for `claims --ledger`
     Claims,
 }
 

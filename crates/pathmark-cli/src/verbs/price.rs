@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     /// Goals: root mean squared errors in linear radiance
     #[arg(long, value_name = "E,E,..", value_delimiter = ',', required = true, allow_hyphen_values = true)]
     rmse: Vec<f64>,
-    /// Samples per pixel of each seed of the pilot
+    /// Samples per pixel of each seed of the pilot, the short renders from which the price follows
     #[arg(long, value_name = "N", default_value_t = 16)]
     pilot_spp: u32,
     /// Seeds of the pilot

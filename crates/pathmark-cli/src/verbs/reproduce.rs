@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
     /// Resume a run that was stopped
     #[arg(long)]
     resume: bool,
-    /// Print rows, estimated seconds and bytes of each experiment, and run none
+    /// Print rows, estimated seconds and bytes of each experiment, and run none but a short pilot
     #[arg(long)]
     plan: bool,
     /// Time limit of each cell's process, as in 10min, or none [default: the experiment's, or ten times the estimated

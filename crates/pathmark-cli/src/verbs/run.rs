@@ -18,21 +18,21 @@ use crate::shell;
 pub(crate) struct Arguments {
     /// An experiment of `pathmark list experiments`, or the path of a .toml file
     experiment: String,
-    /// Output folder
+    /// Folder of the output: rows and figures in DIR/EXPERIMENT, the page in DIR/report.html
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
     /// Resume a sweep that was stopped
     #[arg(long)]
     resume: bool,
-    /// Print rows, estimated seconds and bytes, and how many pairs of what is compared reach which precision; run only a
-    /// pilot
+    /// Print the number of rows, the estimated seconds and bytes, and the processes and pairs that each comparison needs for a
+    /// precision of 3, 2 and 1 %. Runs only a short pilot
     #[arg(long, conflicts_with = "resume")]
     plan: bool,
     /// Also count the instructions of each cell with valgrind, which takes about fifty times as long as a repetition;
     /// `pathmark diff --counts` compares them
     #[arg(long)]
     count_instructions: bool,
-    /// Runs of each cell [default: set by the experiment]
+    /// Repetitions of each cell, a combination of values [default: set by the experiment]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(LARGEST_REPETITIONS)))]
     repetitions: Option<u32>,
     /// Replace the values of an axis, as in scene=my/room.toml or threads=1,2,4,8; may be given several times
@@ -73,13 +73,13 @@ pub(crate) struct Arguments {
 #[derive(Args)]
 #[group(multiple = false)]
 pub(super) struct Size {
-    /// Small images, minutes (the default)
+    /// Small images (the default): all experiments together take about five minutes
     #[arg(long)]
     quick: bool,
-    /// Larger images, up to hours
+    /// Larger images: minutes to hours for an experiment
     #[arg(long)]
     full: bool,
-    /// The sizes and parameters of the reports; all experiments take an hour
+    /// The sizes and parameters of the four reports: all experiments together take more than an hour
     #[arg(long)]
     reports: bool,
 }

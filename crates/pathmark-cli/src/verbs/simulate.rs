@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
     /// Message costs, as printed by `mpiexec -n 2 pathmark inspect messages --json` [default: those of the experiment's folder, or zero]
     #[arg(long, value_name = "FILE", help_heading = "Processes", requires = "ranks")]
     messages: Option<PathBuf>,
-    /// Do not predict this machine first
+    /// Leave out the check that predicts runs on this machine and measures them
     #[arg(long)]
     no_check: bool,
     /// Folder for the table and the figures

@@ -17,7 +17,7 @@ const KEYS: &[(&str, &str)] = &[
         "timeout",
         "time limit of each cell's process, as in \"10min\", or \"none\" [default: ten times its estimate, at least a minute]",
     ),
-    ("requires", "optional features that the build must have: openmp, more-pools"),
+    ("requires", "optional features that the build must have: openmp, more-pools, lane-profiles"),
     ("matrix", "a table of axes, or several under [[matrix]]; cells are all combinations [required]"),
     ("matrix.weak", "true: weak scaling, spp is multiplied by the number of workers"),
     ("matrix.curve", "true: each render gives rows at 1, 2, 4 ... times the fewest samples, up to its spp"),
@@ -40,10 +40,23 @@ const KEYS: &[(&str, &str)] = &[
     ("reports", "the profile --reports, likewise"),
 ];
 
+/// Axes whose option, if there is one, is not made from the list of settings.
+const AXES: &[(&str, &str)] = &[
+    ("scene", "Names of `pathmark list scenes` or `list workloads`, or paths of .toml files"),
+    ("spp", "Samples per pixel"),
+    ("seed", "Seeds of the random numbers"),
+    ("clamp", "Clamps of bright light, as for `render --clamp`"),
+    ("adaptive", "true: more samples where the noise is, as with `render --adaptive`"),
+    ("time-limit", "Seconds of rendering after which a render stops"),
+    ("ranks", "Numbers of processes, which MPI connects"),
+    ("rank-rule", "Rules by which processes share the jobs, as for `render --ranks`"),
+];
+
 /// Key and meaning of all fields that an experiment's file may have.
 pub fn keys() -> impl Iterator<Item = (String, String)> {
     let axes = SETTINGS.iter().map(|axis| {
-        let about = if axis.about.is_empty() { "values of this axis" } else { axis.about };
+        let own = AXES.iter().find(|(name, _)| *name == axis.name).map(|(_, about)| *about);
+        let about = own.unwrap_or(axis.about);
         let required = if REQUIRED.contains(&axis.name) { " [required]" } else { "" };
         (format!("matrix.{}", axis.name), format!("{about}{required}"))
     });
@@ -69,6 +82,15 @@ mod tests {
         for (key, _) in keys().filter(|(key, _)| key.starts_with("matrix.")) {
             assert!(told.contains(&format!("`{}`", key.trim_start_matches("matrix."))), "{key}: {told}");
         }
+    }
+
+    #[test]
+    fn every_axis_is_explained() {
+        for (key, about) in keys() {
+            assert!(!about.trim_end_matches("[required]").trim().is_empty(), "{key}");
+        }
+        let unknown = AXES.iter().find(|(name, _)| !SETTINGS.iter().any(|axis| axis.name == *name));
+        assert_eq!(unknown, None);
     }
 
     #[test]

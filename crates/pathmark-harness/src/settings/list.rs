@@ -35,10 +35,10 @@ macro_rules! settings_list {
             found scene_hash: String, Setting { is_part: true, word: "-{}", ..Setting::NEW };
             /// Name of the estimator.
             spec estimator: String, Setting { nested: 2, of_light: true, word: "/{}", label: "{}",
-                value_name: "NAME", about: "Estimator [default: the scene's own]", ..Setting::NEW };
+                value_name: "NAME", about: "Estimator: one of `pathmark list estimators` [default: the scene's own]", ..Setting::NEW };
             /// Name of the sampler.
             spec sampler: String, Setting { nested: 3, of_light: true, word: "/{}", label: "{}",
-                value_name: "NAME", about: "Sampler", default: "independent", ..Setting::NEW };
+                value_name: "NAME", about: "Sampler, the source of random numbers: one of `pathmark list samplers`", default: "independent", ..Setting::NEW };
             /// Width of the image in pixels.
             spec width: u32, Setting { nested: 1, name: "size", word: "/{}", label: "{}",
                 value_name: "WxH", about: "Width and height in pixels", default: "512x384", ..Setting::NEW };
@@ -61,7 +61,7 @@ macro_rules! settings_list {
             spec clamp: Option<String>, Setting { nested: 9, since: 4, of_light: true, label: "{}", ..Setting::NEW };
             /// Pixel filter; empty if it was the camera's own.
             spec filter: Option<String>, Setting { nested: 10, since: 6, of_light: true, label: "filter {}", absent: "own filter", all: Some(Setting::filters),
-                value_name: "NAME", about: "Pixel filter: tent, box or center [default: the camera's own]", ..Setting::NEW };
+                value_name: "NAME", about: "Pixel filter: one of `pathmark list filters` [default: the camera's own]", ..Setting::NEW };
             /// Distance below which hits were dropped; empty if there was none.
             spec epsilon: Option<String>, Setting { nested: 11, since: 6, of_light: true, label: "epsilon {}", absent: "no epsilon",
                 value_name: "DISTANCE", about: "Drop hits nearer than DISTANCE, as some programs do to exclude the surface where a ray starts: biased, scalar kernel only [default: none needed]", ..Setting::NEW };
@@ -107,10 +107,10 @@ macro_rules! settings_list {
                 value_name: "LEVEL", about: "Instruction set of lanes: one of `pathmark list simd` [default: the fastest that this processor supports]", ..Setting::NEW };
             /// Effect profile of the kernel.
             spec effects: Option<String>, Setting { nested: 15, of_light: true, label: "{}",
-                value_name: "PROFILE", about: "Effect profile [default: the smallest that covers the scene]", ..Setting::NEW };
+                value_name: "PROFILE", about: "Effect profile: one of `pathmark list effects` [default: the smallest that covers the scene]", ..Setting::NEW };
             /// Acceleration structure: `none`, `median` or `sah`.
             spec accelerator: Option<String>, Setting { nested: 16, since: 3, of_light: true, label: "{}",
-                value_name: "NAME", about: "Acceleration structure [default: chosen by the number of primitives]", ..Setting::NEW };
+                value_name: "NAME", about: "Acceleration structure: one of `pathmark list accelerators` [default: chosen by the number of primitives]", ..Setting::NEW };
             /// Policy by which each worker was pinned to a processor; empty if workers were not pinned.
             own pin: crate::machine::PinPolicy = crate::machine::PinPolicy::None, Setting { nested: 25, since: 12, label: "pin {}", absent: "not pinned",
                 value_name: "POLICY", about: "Pin each worker to a processor: none, compact, scatter, one-per-core, performance, or a list such as 0-3,8", default: "none", ..Setting::NEW },

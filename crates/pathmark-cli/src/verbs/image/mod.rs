@@ -14,9 +14,9 @@ use crate::verbs::prelude::*;
 pub(crate) enum Image {
     /// Measure the error of an image against one reference, or against two to exclude their noise.
     Compare(compare::Arguments),
-    /// Write a film or an image in another format.
+    /// Write an image, or a film file with its sums, in another format.
     Convert(Convert),
-    /// Render the two half-references of a scene.
+    /// Render a reference for measuring errors: two images of many samples that share none of them.
     Reference(reference::Arguments),
 }
 

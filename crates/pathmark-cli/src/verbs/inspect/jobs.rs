@@ -16,6 +16,9 @@ pub(crate) struct Arguments {
     output: Option<PathBuf>,
 }
 
+/// More workers have no line of their own.
+const MOST_LINES: usize = 16;
+
 pub(super) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let write = arguments.output.as_deref().map(|path| Ok::<_, Error>((path, writer(path)?))).transpose()?;
     let mut files = Files::default();
@@ -35,9 +38,16 @@ pub(super) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     }
     let capacity_s = balance.makespan_s * balance.workers.len() as f64;
     let percent = |seconds: f64| 100.0 * seconds / capacity_s;
+    let by_worker = balance.workers.iter().enumerate().filter(|_| balance.workers.len() <= MOST_LINES);
+    let by_worker = by_worker.map(|(worker, own)| {
+        let [busy, gaps, tail] = [own.busy_s, own.gap_s, own.tail_s].map(|seconds| seconds * 1e3);
+        let jobs = counted(own.jobs, "job");
+        format!("\nworker {worker}: {jobs}, busy {busy:.3} ms, gaps {gaps:.3} ms, tail {tail:.3} ms")
+    });
+    let by_worker: String = by_worker.collect();
     let number = |value: Option<f64>| value.map_or_else(|| "-".to_string(), |value| format!("{value:.3}"));
     print(&format!(
-        "{}\n{} on {}, makespan {:.3} ms\nbusy {:.2} %, gaps {:.2} %, tail {:.2} %\nload imbalance {}, gap per job {} µs",
+        "{}\n{} on {}, makespan {:.3} ms\nbusy {:.2} %, gaps {:.2} %, tail {:.2} %\nload imbalance {}, gap per job {} µs{by_worker}",
         timeline::name(&trace),
         counted(balance.jobs(), "job"),
         counted(balance.workers.len(), "worker"),
