@@ -211,7 +211,8 @@ fn rows_of_another_version_are_told_as_such() {
     }
 }
 
-/// Rows of version 7 lack two columns that may be empty. They are read, but no rows with other columns are appended.
+/// Rows of version 7 lack two columns that may be empty. They are read, but no rows with other columns are appended. The
+/// refusal names the columns on either side.
 #[test]
 fn rows_of_the_version_before_are_read_and_not_added_to() {
     let (folder, records) = after_a_run();
@@ -233,8 +234,12 @@ fn rows_of_the_version_before_are_read_and_not_added_to() {
         folder.path(),
         &RESUME,
         2,
-        &["records.csv:1:", "device_compile_s, device_copy_s", "other columns", "another --out"],
+        &["records.csv:1:", "it lacks device_compile_s, device_copy_s", "other columns", "another --out"],
     );
+    // Its own name for a column of today.
+    let text = fs::read_to_string(&records).unwrap().replacen("idle_tail_s", "tail_sum_s", 1);
+    fs::write(&records, text).unwrap();
+    refused(folder.path(), &RESUME, 2, &["device_copy_s, idle_tail_s; it has tail_sum_s", "that wrote the file"]);
 }
 
 #[test]

@@ -92,6 +92,37 @@ fn a_sweep_killed_before_its_first_row_can_be_resumed() {
     }
 }
 
+/// The time limit once was a column behind the settings: rows in that order go on in today's, and no value changes its
+/// column.
+#[test]
+fn columns_in_another_order_are_put_in_order() {
+    let (folder, records) = prepared(TINY);
+    finish(pathmark(folder.path(), &RUN)).with_code(0);
+    let (expected, whole) = (results(&records), fs::read(&records).unwrap());
+    let mut reader = csv::Reader::from_path(&records).unwrap();
+    let heads = reader.headers().unwrap().clone();
+    let place = |name: &str| heads.iter().position(|own| own == name).unwrap();
+    let (from, to) = (place("time_limit_s"), place("target_error"));
+    assert!(from < to);
+    let moved = |row: &csv::StringRecord| {
+        let mut fields: Vec<String> = row.iter().map(str::to_string).collect();
+        fields[from..=to].rotate_left(1);
+        fields
+    };
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(moved(&heads)).unwrap();
+    reader.records().for_each(|row| writer.write_record(moved(&row.unwrap())).unwrap());
+    let old = writer.into_inner().unwrap();
+    fs::write(&records, &old).unwrap();
+    finish(pathmark(folder.path(), &RESUME)).with_code(0);
+    assert_eq!(fs::read(&records).unwrap(), whole);
+    // Without its last row, which is run again.
+    let end = old[..old.len() - 1].iter().rposition(|byte| *byte == b'\n').unwrap() + 1;
+    fs::write(&records, &old[..end]).unwrap();
+    finish(pathmark(folder.path(), &RESUME)).with_code(0);
+    assert_eq!(results(&records), expected);
+}
+
 /// A failed row is no result: it is run again, and appears once.
 #[test]
 fn a_failed_row_is_run_again() {

@@ -14,10 +14,18 @@
   };
   all("figure[id] > figcaption").forEach((caption) => addCopy(caption, caption.parentElement.id, "this figure"));
   all("tr[id^='claim-']").forEach((row) => addCopy(row.cells[0], row.id, row.id.replace("-", " ")));
+  // Addresses have codes for letters beyond ASCII; a text that is no code stays as it is.
+  const decoded = (text) => {
+    try {
+      return decodeURIComponent(text);
+    } catch {
+      return text;
+    }
+  };
   // An address names a part of the page, and the filters of the claims: `#claims&report=Report+A&verdict=open`.
   const address = () => {
     const [id, ...filters] = window.location.hash.slice(1).split("&");
-    return [id, new URLSearchParams(filters.join("&"))];
+    return [decoded(id), new URLSearchParams(filters.join("&"))];
   };
   const visit = () => {
     const [id] = address();

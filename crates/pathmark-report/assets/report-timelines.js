@@ -51,7 +51,8 @@
     line.textContent = "Zoom with the buttons or with Ctrl and the wheel, move by dragging, and point at a job.";
     const canvas = document.createElement("canvas");
     canvas.className = "timeline";
-    details.append(summary, tools, canvas, line);
+    // The line stays in sight above the lanes, however high they are.
+    details.append(summary, tools, line, canvas);
     figure.append(details);
 
     const shown = { from: 0, to: end };

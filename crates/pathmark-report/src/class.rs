@@ -68,20 +68,20 @@ fn folders(out: &Path) -> Result<Vec<PathBuf>> {
     Ok(paths.into_iter().filter(|path| path.is_dir()).collect())
 }
 
-/// The section of an experiment; if it is a student's, the heading begins with the folder's name.
-pub(crate) fn of_student(student: Option<&str>, section: Section) -> Section {
+/// The section of an experiment; if it is a student's, the heading begins with the folder's name, and it is no answer of
+/// the page, which is about all of them.
+pub(crate) fn of_student(student: Option<&str>, mut section: Section) -> Section {
     let Some(student) = student else { return section };
     let name = if section.name == student { section.name } else { format!("{student}-{}", section.name) };
-    // It is an anchor, which has no blanks.
-    let name = name.replace(char::is_whitespace, "-");
-    Section { name, title: format!("{student}: {}", section.title), ..section }
+    section.blocks.retain(|block| !matches!(block, Block::Answer { .. }));
+    Section { name, title: format!("{student}: {}", section.title), in_short: None, ..section }
 }
 
 /// A schedule in a student's folder.
 struct Line {
     student: String,
     schedule: String,
-    speedup: Estimated,
+    speedup: Ratio,
     processors: usize,
     processor: String,
 }
@@ -107,36 +107,102 @@ impl Class {
         self.lines.extend(serial.speedups().into_iter().map(|(schedule, speedup)| Line {
             student: student.to_string(),
             schedule: crew(&serial.line(schedule), schedule.key.threads),
-            speedup: speedup.into(),
+            speedup,
             processors: machine.processors,
             processor: machine.cpu.clone(),
         }));
         Ok(())
     }
 
-    /// The section before those of the students; `None` without any.
-    pub(crate) fn section(&self) -> Option<Section> {
+    pub(crate) fn is_empty(&self) -> bool {
+        self.students.is_empty()
+    }
+
+    /// The section before those of the students, for the page of the folder `out`; `None` without any.
+    pub(crate) fn section(&self, out: &Path) -> Option<Section> {
+        let folders = counted(self.students.len(), "folder");
         let found = format!(
-            "{}, {} of machine. Each speedup is a ratio of times within one folder, so folders compare although machines \
-             differ. Seconds would not.",
-            counted(self.students.len(), "folder"),
-            counted(self.machines.len(), "kind")
+            "{folders}, {} of machine.{} Each speedup is a ratio of times within one folder, so folders compare although \
+             machines differ. Seconds would not.",
+            counted(self.machines.len(), "kind"),
+            self.range().unwrap_or_default()
         );
-        let table = Block::table("class", "Speedups of the class, against serial in the same folder", &self.lines)
+        let all = Block::table("class", "Speedups of the class, against serial in the same folder", &self.lines)
             .column("folder", |line| line.student.clone())
             .column("schedule", |line| line.schedule.clone())
-            .estimated("speedup", Decimals(2), |line| line.speedup)
+            .estimated("speedup", Decimals(2), |line| Estimated::from(line.speedup))
             .column("processors", |line| line.processors.to_string())
             .column("processor", |line| line.processor.clone())
             .end();
+        let name = out.canonicalize().map(|folder| name_of(&folder)).unwrap_or_default();
         Some(Section {
-            name: "class".to_string(),
+            name: "the-class".to_string(),
             title: "The class".to_string(),
+            page_title: Some(joined([name, format!("speedups of {folders}")])),
             question: "How many times as fast as serial is each schedule, in each folder?".to_string(),
             chapter: Some(self.chapter?),
-            blocks: vec![Block::finding(found), table],
+            in_short: Some(found.clone()),
+            blocks: vec![Block::finding(found), self.by_schedule(), Block::figure("class", self.plot()), all],
             ..Section::default()
         })
+    }
+
+    /// The highest speedup of each folder, the highest first.
+    fn highest(&self) -> Vec<&Line> {
+        let of_folders = gathered(self.lines.iter().map(|line| (&line.student, line))).into_values();
+        let mut lines: Vec<&Line> =
+            of_folders.filter_map(|own| own.into_iter().min_by(|a, b| a.speedup.falling(&b.speedup))).collect();
+        lines.sort_by(|a, b| a.speedup.falling(&b.speedup));
+        lines
+    }
+
+    /// A sentence about the highest speedups; `None` if no folder has one that is ranked.
+    fn range(&self) -> Option<String> {
+        let highest = self.highest().into_iter().map(|line| line.speedup).filter(|speedup| !speedup.is_partial);
+        let speedups: Vec<f64> = highest.map(|speedup| speedup.value).collect();
+        let (most, least) = (speedups.first()?, speedups.last()?);
+        Some(format!(
+            " The highest speedup of a folder is between {least:.2} and {most:.2}, with the median {:.2}.",
+            median(&speedups)?
+        ))
+    }
+
+    fn plot(&self) -> DotPlot {
+        let row = |line: &Line| {
+            let dot = Estimated::from(line.speedup).dot();
+            DotRow::new(format!("{}: {}", line.student, line.schedule), vec![Some(dot)])
+        };
+        let rows = self.highest().into_iter().map(row).collect();
+        let axis = Axis::linear("speedup against serial in the same folder").including([1.0]);
+        let mut plot = DotPlot::new(Title::new("The highest speedup of each folder"), axis, rows);
+        plot.guides = vec![(1.0, "serial".to_string())];
+        plot.subtitle = counted(self.machines.len(), "kind") + " of machine";
+        plot.caption = ratio_bars(self.highest().into_iter().map(|line| line.speedup));
+        plot
+    }
+
+    /// The speedups of each schedule over the folders.
+    fn by_schedule(&self) -> Block {
+        let kinds = gathered(self.lines.iter().map(|line| (line.schedule.as_str(), line)));
+        let kinds = kinds.into_iter().map(|(schedule, mut own)| {
+            own.sort_by(|a, b| a.speedup.rising(&b.speedup));
+            // Partial ones follow all others.
+            own.retain(|line| !line.speedup.is_partial);
+            (schedule, own)
+        });
+        let speedup = |line: Option<&&Line>| line.map(|line| line.speedup.value);
+        let folder = |line: Option<&&Line>| line.map_or_else(String::new, |line| line.student.clone());
+        Block::table("class-schedules", "Speedups of each schedule over the folders", kinds)
+            .column("schedule", |(schedule, _)| (*schedule).to_string())
+            .number("folders", Decimals(0), |(_, own)| own.len() as f64)
+            .number("median", Decimals(2), |(_, own)| {
+                median(&own.iter().map(|line| line.speedup.value).collect::<Vec<f64>>())
+            })
+            .number("lowest", Decimals(2), |(_, own)| speedup(own.first()))
+            .column("in folder", |(_, own)| folder(own.first()))
+            .number("highest", Decimals(2), |(_, own)| speedup(own.last()))
+            .column("of folder", |(_, own)| folder(own.last()))
+            .end()
     }
 }
 
@@ -146,7 +212,7 @@ mod tests {
     use crate::experiment::RunFile;
     use crate::lab::Lab;
     use crate::measure::Record;
-    use crate::tests::{folder_of, row, table};
+    use crate::tests::{folder_of, row};
     use std::fs;
 
     /// Six repetitions of serial and of a pool that is twice as fast, on a machine that takes `factor` times as long.
@@ -193,12 +259,78 @@ mod tests {
             let results = Results::open(&Lab::built_in(), &folder).unwrap();
             found.add(&student.unwrap(), &results).unwrap();
         }
-        let section = found.section().unwrap();
-        let shown: Vec<[String; 3]> =
-            table(&section.blocks).rows().map(|row| [&row[0], &row[1], &row[2]].map(Clone::clone)).collect();
+        let section = found.section(class.path()).unwrap();
+        let Some(Block::Table { table, .. }) = section.blocks.last() else { panic!("a table of all") };
+        let shown: Vec<[String; 3]> = table.rows().map(|row| [&row[0], &row[1], &row[2]].map(Clone::clone)).collect();
         // The machine of one student takes seven times as long.
         let told = "2.00, 2.00 to 2.00 (96.8 %)";
         assert_eq!(shown, [["anna", "pool, 2 threads", told], ["bert b", "pool, 2 threads", told]]);
+    }
+
+    #[test]
+    fn names_of_folders_break_no_link() {
+        let class = class();
+        fs::rename(class.path().join("anna"), class.path().join("a #1 50%")).unwrap();
+        let index = crate::write_pages("--pages", &Lab::built_in(), class.path()).unwrap();
+        let page = fs::read_to_string(class.path().join("report.html")).unwrap();
+        let links =
+            ["a%20%231%2050%25/records.csv", "bert%20b/an-experiment/machine.toml", "#a--1-50-", "#a--1-50--again"];
+        for link in links {
+            assert!(page.contains(&format!("href=\"{link}\"")), "{link}: {page}");
+        }
+        assert!(page.contains("<section id=\"a--1-50-\""), "{page}");
+        let index = fs::read_to_string(index).unwrap();
+        assert!(index.contains("href=\"a%20%231%2050%25.html\""), "{index}");
+        assert!(class.path().join("pages/a #1 50%.html").is_file());
+    }
+
+    /// Forty folders of forty machines, which differ in speed by up to forty times and whose pools are 1.1 to 5 times as fast
+    /// as serial.
+    #[test]
+    fn forty_folders_make_one_page_of_ratios() {
+        let class = tempfile::tempdir().unwrap();
+        let out = class.path().join("autumn 2026");
+        for student in 1..=40_u32 {
+            let mut rows = rows(f64::from(student));
+            for row in rows.iter_mut().filter(|row| row.threads == 2) {
+                row.makespan_s = row.makespan_s.map(|seconds| 2.0 * seconds / (1.0 + 0.1 * f64::from(student)));
+            }
+            let own = folder_of(&["speedup"], "", rows);
+            let folder = out.join(format!("student-{student:02}"));
+            copy(&own.path().join("an-experiment"), &folder);
+            let mut run = RunFile {
+                experiment: "lab.toml".to_string(),
+                started_utc: "2026-11-28T08:00:00Z".to_string(),
+                ..RunFile::of_now("pathmark run lab.toml".to_string())
+            };
+            run.machine.cpu = format!("processor of student {student}");
+            run.write(&folder.join(MACHINE)).unwrap();
+        }
+        let page = fs::read_to_string(crate::write(&Lab::built_in(), &out).unwrap()).unwrap();
+        assert!(page.len() < 4_000_000, "{} bytes", page.len());
+        // Figures of the students are files, to which the page links.
+        assert!(page.matches("<svg").count() == 1 && page.contains("href=\"student-07/figures/speedup.svg\""));
+        assert!(out.join("student-07/figures/speedup.svg").is_file());
+        assert!(page.contains("<title>autumn 2026, speedups of 40 folders</title>"));
+        assert!(
+            page.contains("<h1>autumn 2026, speedups of 40 folders</h1><p class=\"facts\">2026-11-28, 40 machines")
+        );
+        assert_eq!(page.matches("<h3>student-").count(), 40);
+        let seen = page.split_once("<main>").unwrap().1.split_once("<script>").unwrap().0;
+        assert!(!seen.to_lowercase().contains("report a") && !seen.contains("reports"), "no word of the reports");
+        let begin = seen.split_once("<h3>The class</h3>").unwrap().1.split_once("<h3>student-01").unwrap().0;
+        let found = "40 folders, 40 kinds of machine. The highest speedup of a folder is between 1.10 and 5.00, with the median 3.05.";
+        assert!(begin.contains(found), "{begin}");
+        // A table of all folders is open where a class needs it: by schedule.
+        let tables: Vec<&str> = begin.split("<details ").skip(1).collect();
+        assert_eq!(tables.len(), 2, "{begin}");
+        assert!(tables[0].starts_with("class=\"wide\" open>") && !tables[1].starts_with("class=\"wide\" open>"));
+        let row = ["pool, 2 threads", "40", "3.05", "1.10", "student-01", "5.00", "student-40"];
+        let cells = row.map(|cell| format!("<td>{cell}</td>")).concat();
+        assert!(tables[0].contains(&cells), "{}", tables[0]);
+        let rows = tables[1].split_once("<tbody>").unwrap().1.matches("<tr>").count();
+        assert_eq!(rows, 40, "{}", tables[1]);
+        assert!(tables[1].contains("processor of student 7") && !tables.concat().contains("seconds"));
     }
 
     #[test]

@@ -133,6 +133,97 @@ fn kernels_are_compared_at_the_most_samples_that_both_have() {
     assert!(only.of.contains("64 spp") && close(only.value, 64.0 / 7.4), "{only:?}");
     let title = "The fastest kernel is 8.65 times as fast as the scalar kernel";
     assert!(svg(&blocks, "kernels").contains(title));
+    let text = words(&blocks);
+    assert!(text.contains("On one thread the fastest kernel is 8.65 (8.65 to 8.65"), "{text}");
+    assert!(text.contains(" times as fast as scalar on cornell: bsdf + independent, 64 spp (lanes)."), "{text}");
+}
+
+/// RMSE = 1 / sqrt(n) and t = n by the scalar kernel: an RMSE of .5 takes 4 s. Lanes halve the time, and the other estimator
+/// halves the error, so both together take half a second.
+#[test]
+fn choices_that_multiply_are_told_by_the_time_to_an_error() {
+    let mut rows = Vec::new();
+    for (seed, spp) in (1..=3).flat_map(|seed| [1, 4, 16].map(|spp| (seed, spp))) {
+        for (kernel, estimator, mse, seconds) in
+            [("scalar", "bsdf", 1.0, 1.0), ("lanes", "bsdf", 1.0, 0.5), ("lanes", "nee", 0.25, 0.5)]
+        {
+            let factor = 1.0 + 0.01 * seed as f64;
+            let (mse, makespan_s) = (mse * factor / f64::from(spp), Some(seconds * factor * f64::from(spp)));
+            let (kernel, estimator) = (kernel.to_string(), estimator.to_string());
+            rows.push(Record { seed, spp, kernel, estimator, mse: Some(mse), makespan_s, ..row() });
+        }
+    }
+    let blocks = blocks(&results(&["kernels"], "[figure.kernels]\ngoal = 0.5", rows).unwrap()).unwrap();
+    let text = words(&blocks);
+    assert!(text.contains(" is 8.0 (") && text.contains(" to an RMSE of 0.5."), "{text}");
+    let rows: Vec<Vec<String>> = table(&blocks, "kernels-at-equal-error").rows().collect();
+    let [only] = &rows[..] else { panic!("{rows:?}") };
+    assert!(only[..2] == ["cornell", "1"] && only[2].contains("nee") && only[4].starts_with("8.0, "), "{only:?}");
+}
+
+/// Each number of threads has an area of its own, and each output a row for its pieces.
+#[test]
+fn outputs_have_an_area_for_each_number_of_threads() {
+    let mut rows = Vec::new();
+    for repetition in 0..6 {
+        for (threads, decomposition, output, seconds) in [
+            (1, "rows", "slots", 2.0),
+            (1, "rows", "locked", 2.5),
+            (2, "rows", "slots", 1.0),
+            (2, "rows", "locked", 4.0),
+            (2, "tiles:2x2", "slots", 1.0),
+            (2, "tiles:2x2", "locked", 1.0),
+        ] {
+            let [strategy, decomposition, output] = ["pool", decomposition, output].map(str::to_string);
+            let makespan_s = Some(seconds);
+            rows.push(Record { repetition, strategy, threads, decomposition, output, makespan_s, ..row() });
+        }
+    }
+    let blocks = blocks(&results(&["outputs"], "", rows).unwrap()).unwrap();
+    let notes = notes(&blocks, "outputs");
+    for (series, of, expected) in [
+        ("1 thread", "locked, rows", 1.25),
+        ("2 threads", "locked, rows", 4.0),
+        ("2 threads", "locked, tiles:2x2", 1.0),
+    ] {
+        assert_eq!(value(&notes, series, of), expected, "{series}, {of}");
+    }
+    assert_eq!(notes.len(), 3);
+    let places =
+        |series: &str| notes.iter().filter(|note| note.series == series).map(|note| note.at.0).collect::<Vec<f64>>();
+    let (one, two) = (places("1 thread"), places("2 threads"));
+    assert!(two.iter().all(|x| *x > one[0]), "{one:?} {two:?}");
+    assert!(svg(&blocks, "outputs").contains("locked takes 4 times as long with rows, 2 threads"));
+}
+
+/// Without a hierarchy a ray takes time in proportion to the spheres.
+#[test]
+fn the_gain_of_a_hierarchy_is_told_at_the_most_spheres() {
+    let mut rows = Vec::new();
+    for repetition in 0..6 {
+        for (spheres, accelerator, seconds) in [
+            (10, "none", 1.0),
+            (10, "sah", 2.0),
+            (100, "none", 10.0),
+            (100, "sah", 4.0),
+            (1000, "none", 100.0),
+            (1000, "sah", 5.0),
+            (1000, "median", 10.0),
+        ] {
+            let (scene, accelerator) = (format!("balls:{spheres}"), accelerator.to_string());
+            rows.push(Record { repetition, scene, accelerator, makespan_s: Some(seconds), ..row() });
+        }
+    }
+    let blocks = blocks(&results(&["acceleration"], "", rows).unwrap()).unwrap();
+    let findings: Vec<&str> = blocks.iter().filter_map(Block::as_finding).collect();
+    let told = "The largest gain at 1000 spheres is that of sah: 20.0 (20.0 to 20.0, 96.8 %) times as fast as testing every \
+                sphere. It is faster from 100 spheres on; at 10 it is slower.";
+    assert_eq!(findings, [told]);
+    let gains =
+        table(&blocks, "acceleration-gains").rows().map(|row| format!("{} {} {}", row[0], row[1], &row[2][..5]));
+    let expected =
+        ["10 spheres sah 0.50,", "100 spheres sah 2.50,", "1000 spheres median 10.00", "1000 spheres sah 20.00"];
+    assert_eq!(gains.collect::<Vec<String>>(), expected);
 }
 
 /// Two generators at two numbers of samples stand below each other, in seconds.

@@ -126,15 +126,15 @@ fn inflation_block(ratios: &[BusyRatio]) -> Option<Block> {
     let inflation = WorkInflation::of(ratios, None);
     let (workers, factors) = inflation.largest().filter(|(workers, _)| *workers > 1)?;
     let told = Estimated::typical(factors, Stopping::Fixed)?;
+    let confidence = told.interval.map(|own| format!("{:.1} % confidence", own.percent()));
     Some(Block::finding(format!(
         "Work inflation: with {} busy, the jobs took {}{} times as long as in the serial run of the same repetition \
-         ({:.0} % confidence, {}). A prediction without this factor is too fast by it. The forecasts leave it out: in \
+         ({}). A prediction without this factor is too fast by it. The forecasts leave it out: in \
          them, a busy neighbour slows no core.",
         counted(workers, "thread"),
         short(told.value, 3),
         between(told.bar(), 3),
-        100.0 * LEVEL,
-        counted(factors.len(), "repetition"),
+        joined(confidence.into_iter().chain([counted(factors.len(), "repetition")])),
     )))
 }
 

@@ -60,6 +60,9 @@ const PAGE: &str = "report.html";
 /// The folder of pages of one section each.
 const PAGES: &str = "pages";
 
+/// The page of a class with more folders only links to their figures, so that it stays small.
+const MOST_DRAWN: usize = 8;
+
 /// Enters the page of a folder into the files of a command that will write it. `option` is the option that named the
 /// folder. Refuses a folder that has another file of that name.
 pub fn claim(option: &str, out: &Path, files: &mut Files) -> Result<()> {
@@ -85,8 +88,11 @@ pub fn write_pages(option: &str, lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> 
     }
     write_page(&sections, out)?;
     create_folder(option, &folder)?;
-    // Paths are as seen from the page.
-    sections.iter_mut().flat_map(|section| &mut section.files).for_each(|file| *file = format!("../{file}"));
+    for section in &mut sections {
+        // Paths are as seen from the page, which has room for figures.
+        section.files.iter_mut().for_each(|file| *file = format!("../{file}"));
+        section.linked_figures = None;
+    }
     for section in &sections {
         let html = page::html_of_one(section)?;
         atomic_file::write(&path(section), |file| file.write_all(html.as_bytes()))?;
@@ -110,21 +116,24 @@ fn sections(lab: &Arc<Lab>, out: &Path) -> Result<Vec<Section>> {
         sections.push(section);
         Ok::<(), Error>(())
     };
-    for Member { folder, student } in members(out)? {
+    let members = members(out)?;
+    let are_many = members.len() > MOST_DRAWN;
+    for Member { folder, student } in members {
         let results = Results::read(lab, folder.parent().unwrap_or(out), &folder)?;
         let blocks = figures::blocks(&results)?;
         if let Some(student) = &student {
             class.add(student, &results)?;
         }
-        let own = folder.strip_prefix(out).unwrap_or(&folder).display();
+        let own = folder.strip_prefix(out).unwrap_or(&folder).display().to_string();
         let rows = records_path(&folder);
         let files = [rows.as_path(), Path::new(MACHINE)]
             .map(|file| format!("{own}/{}", file.file_name().unwrap_or_default().to_string_lossy()))
             .to_vec();
-        let section = Section { files, ..Section::of(results, blocks) };
+        let linked_figures = (student.is_some() && are_many).then(|| format!("{own}/figures"));
+        let section = Section { files, linked_figures, ..Section::of(results, blocks) };
         add(&folder, class::of_student(student.as_deref(), section))?;
     }
-    if let Some(section) = class.section() {
+    if let Some(section) = class.section(out) {
         add(out, section)?;
     }
     for section in [guards::section(out)?, page::bursts::section(out)?, benches::section(out)?].into_iter().flatten() {
@@ -133,7 +142,10 @@ fn sections(lab: &Arc<Lab>, out: &Path) -> Result<Vec<Section>> {
     if !sections.is_empty() {
         sections.extend(doctor::section(out)?);
     }
-    sections.extend(claims::section(lab, out)?);
+    // The rows of students answer no claim of the reports.
+    if class.is_empty() {
+        sections.extend(claims::section(lab, out)?);
+    }
     if sections.is_empty() {
         let problem = "holds no experiment: no folder in it has a records.csv";
         return Err(InputError::new("folder", out.display().to_string(), problem).into());

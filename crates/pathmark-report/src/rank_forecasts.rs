@@ -96,8 +96,8 @@ pub fn rank_prediction_blocks(predictions: &[RankPrediction]) -> Vec<Block> {
     let Some(found) = agreement(&pairs) else { return Vec::new() };
     let runs = predictions.iter().map(|prediction| prediction.runs).sum();
     let finding = format!(
-        "{} of this machine predicted from serial runs. Over all {}: {}.",
-        counted(predictions.len(), "schedule of processes"),
+        "{} of processes of this machine predicted from serial runs. Over all {}: {}.",
+        counted(predictions.len(), "schedule"),
         counted(runs, "run"),
         in_words(&found),
     );

@@ -226,7 +226,7 @@ fn words(part: Part) -> [&'static str; 2] {
 #[cfg(test)]
 mod tests {
     use super::super::remedy::Outlook;
-    use super::super::tests::{folder_of, results, row, words};
+    use super::super::tests::{folder_of, results, row, svg, words};
     use super::*;
     use crate::experiment::trace_file;
     use crate::figures::blocks;
@@ -412,6 +412,23 @@ mod tests {
         let text = words(&blocks(&results).unwrap());
         assert!(text.contains("Why not 2 times? static-blocks, 2 threads, loses 20 % (tail)"), "{text}");
         assert!(text.contains("static-blocks, 2 threads, tail: 20 (20 to 20)"), "{text}");
+    }
+
+    /// Eight workers on two processors lose more, and the title of the speedups is not about them either.
+    #[test]
+    fn the_title_is_about_a_thread_for_each_processor() {
+        let mut rows = rows("static-blocks", [2.5, 4.0, 0.0, 0.0, 0.0]);
+        let crowd = self::rows("crowd", [5.0, 20.0, 0.0, 0.0, 0.0]);
+        let crowd = crowd.into_iter().filter(|row| row.threads == 2);
+        let crowd = crowd.map(|row| Record { threads: 8, workers_used: Some(8), cpu_user_s: Some(4.5), ..row });
+        let crowd: Vec<Record> = crowd.collect();
+        let title = |rows: Vec<Record>| svg(&blocks(&results(&["losses"], "", rows).unwrap()).unwrap(), "losses");
+        let serial: Vec<Record> = rows.iter().filter(|row| row.threads == 1).cloned().collect();
+        let alone = title([serial, crowd.clone()].concat());
+        assert!(alone.contains("Why not 2 times? crowd, 8 threads, loses 55 % (idle processors)"), "{alone}");
+        rows.extend(crowd);
+        let both = title(rows);
+        assert!(both.contains("Why not 2 times? static-blocks, 2 threads, loses 20 % (tail)"), "{both}");
     }
 
     /// `static-blocks` loses twice as much, but over half of the repetitions.

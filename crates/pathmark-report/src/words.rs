@@ -9,6 +9,12 @@ pub fn counted(count: usize, thing: &str) -> String {
     if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
 }
 
+/// A text as the beginning of a sentence.
+pub(super) fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect()
+}
+
 /// The sentence of a caption about hollow marks; empty if there are none.
 pub(super) fn hollow(told: impl IntoIterator<Item = Estimated>) -> &'static str {
     let has_some = told.into_iter().any(|told| told.is_partial);

@@ -75,16 +75,27 @@ fn end_of_rows(bytes: &[u8]) -> usize {
     end
 }
 
-/// Refuses a file whose columns differ from those of the rows to add.
-fn check_columns(text: &str, path: &Path) -> Result<()> {
+/// Whether a file has the columns of the rows to add in the same order. Refuses a file with other columns.
+fn are_in_order(text: &str, path: &Path) -> Result<bool> {
     let head = csv::ReaderBuilder::new().from_reader(text.as_bytes()).headers().cloned().unwrap_or_default();
-    if head.is_empty() || head.iter().eq(COLUMNS.iter().map(|column| column.name)) {
-        return Ok(());
+    let own: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
+    if head.is_empty() || head.iter().eq(own.iter().copied()) {
+        return Ok(true);
     }
-    let is_lacking = |column: &&Column| !head.iter().any(|name| name == column.name);
-    let lacking: Vec<&str> = COLUMNS.iter().filter(is_lacking).map(|column| column.name).collect();
-    let problem = "was written with other columns, so this version of the program cannot add rows to it";
-    let error = InputError::new("records", lacking.join(", "), problem).allowed("another --out");
+    let lacking: Vec<&str> = own.iter().copied().filter(|name| !head.iter().any(|other| other == *name)).collect();
+    let more: Vec<&str> = head.iter().filter(|name| !own.contains(name)).collect();
+    let sides = [("lacks", lacking), ("has", more)].map(|(side, names)| (side, names.join(", ")));
+    let differences = sides.into_iter().filter(|(_, names)| !names.is_empty());
+    let differences: Vec<String> = differences.map(|(side, names)| format!("it {side} {names}")).collect();
+    if differences.is_empty() {
+        return Ok(false);
+    }
+    let problem = format!(
+        "the file was written with other columns, so this version of the program cannot add rows to it: {}",
+        differences.join("; ")
+    );
+    let error = InputError::new("columns", "", problem);
+    let error = error.allowed("another --out, or the version of the program that wrote the file");
     Err(error.in_file(path.display().to_string(), Some((1, 1))).into())
 }
 
@@ -175,7 +186,7 @@ impl RecordsFile {
     }
 
     /// Opens an existing file and returns its rows, except a half-written last row and failed rows, which are run
-    /// again.
+    /// again. Columns in another order, as some versions of the program wrote them, are put in order.
     pub fn resume(path: &Path) -> Result<(Self, Vec<Record>)> {
         let open = || {
             let file = OpenOptions::new().read(true).write(true).open(path);
@@ -185,11 +196,11 @@ impl RecordsFile {
         let bytes = std::fs::read(path).map_err(|e| Error::system("reading", path, e))?;
         let complete = complete_part(&bytes, path)?;
         let mut records = parse(complete, path)?;
-        check_columns(complete, path)?;
+        let are_in_order = are_in_order(complete, path)?;
         let rows = records.len();
         // A program or device that was missing may be there by now.
         records.retain(|record| record.error.is_empty() && !record.is_left_out());
-        if rows == records.len() && complete.len() == bytes.len() {
+        if are_in_order && rows == records.len() && complete.len() == bytes.len() {
             return Ok((locked, records));
         }
         // The new file replaces the old one in one step, so a kill here loses nothing.

@@ -7,9 +7,11 @@ use crate::atomic_file;
 use crate::block::Block;
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
+use crate::page::href;
 use crate::plot::number;
 use crate::prelude::{counted, joined};
 use crate::table::Table;
+use crate::words::capital;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::fs::File;
@@ -319,12 +321,12 @@ fn markdown(heading: &str, answers: &[Answer<'_>], base: &Path) -> String {
 /// Links to the files of an answer's rows.
 fn links(answer: &Answer<'_>, base: &Path) -> String {
     let shown = answer.sources.iter().map(|source| seen_from(base, source).display().to_string());
-    shown.map(|shown| format!("[{shown}]({shown})")).collect::<Vec<_>>().join(", ")
+    shown.map(|shown| format!("[{shown}]({})", href(&shown))).collect::<Vec<_>>().join(", ")
 }
 
 fn entry(answer: &Answer<'_>, base: &Path) -> String {
     let claim = answer.claim;
-    let mut text = format!("\n### {}. {}\n\n**{}**", claim.id, claim.claim, capital(answer.verdict));
+    let mut text = format!("\n### {}. {}\n\n**{}**", claim.id, claim.claim, capital(&answer.verdict.to_string()));
     for part in [answer.in_runs(), answer.settled_by()].iter().filter(|part| !part.is_empty()) {
         let _ = write!(text, ", {part}");
     }
@@ -350,12 +352,6 @@ fn entry(answer: &Answer<'_>, base: &Path) -> String {
         let _ = writeln!(text, "- {}", claim.note.trim());
     }
     text
-}
-
-fn capital(verdict: Verdict) -> String {
-    let name = verdict.to_string();
-    let (first, rest) = name.split_at(1);
-    first.to_uppercase() + rest
 }
 
 /// The number of claims with each verdict, in a sentence.

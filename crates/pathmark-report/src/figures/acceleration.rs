@@ -2,6 +2,7 @@
 
 use crate::prelude::*;
 use crate::scene::ACCELERATORS;
+use crate::words::with_interval;
 
 /// Rows by a number (of primitives or samples), then by accelerator.
 type Places<'a> = BTreeMap<u64, BTreeMap<&'a str, Vec<&'a Row>>>;
@@ -24,18 +25,17 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let of_one_image = images.rev().max_by_key(spp_of).unwrap_or_default();
     let samples = places(of_one_image, |row| u64::from(row.spp));
     let mut blocks = Vec::new();
-    let hierarchies = || accelerators.iter().copied().filter(|(_, name)| *name != yardstick);
-    let mut of_sizes = gains(&sizes, &yardstick, results.stopping())?;
+    let of_sizes = gains(&sizes, &yardstick, results.stopping())?;
     blocks.extend(against_primitives(results, &sizes, &accelerators, fastest(&of_sizes)));
-    for (_, name) in hierarchies() {
-        blocks.extend(crossover(name, &of_sizes.remove(name).unwrap_or_default()));
-    }
-    let mut of_samples = gains(&samples, &yardstick, results.stopping())?;
-    let gains = hierarchies().map(|(place, name)| (place, name, of_samples.remove(name).unwrap_or_default()));
-    blocks.extend(against_spp(results, &samples, &gains.collect::<Vec<_>>()));
-    for (_, name) in hierarchies() {
-        blocks.extend(marginal(&others, &yardstick, name, results.stopping())?);
-    }
+    blocks.extend(crossover(&of_sizes));
+    let of_samples = gains(&samples, &yardstick, results.stopping())?;
+    blocks.extend(against_spp(results, &samples, &accelerators, &of_samples));
+    let further = further(&others, &accelerators, &yardstick, results.stopping())?;
+    blocks.extend(marginal(&further, &yardstick));
+    let spheres = listed(&of_sizes, |count| format!("{count} spheres"));
+    let image = image(&samples);
+    let of_spp = listed(&of_samples, |spp| joined([image.clone(), format!("{spp} spp")]));
+    blocks.extend(gain_table(spheres.into_iter().chain(of_spp).chain(further).collect(), &yardstick));
     blocks.push(table(results, &accelerators));
     Ok(blocks)
 }
@@ -62,12 +62,8 @@ fn any_accelerator(_: &mut ImageKey, schedule: &mut ScheduleKey) {
 
 /// The result in a line: the accelerator with the largest gain in the largest scene.
 fn fastest(of_sizes: &BTreeMap<&str, Gains>) -> Option<String> {
-    let ranked = of_sizes.iter().flat_map(|(name, gains)| {
-        gains.iter().filter(|(_, gain)| !gain.is_partial).map(move |(count, gain)| (*name, *count, *gain))
-    });
-    let most = ranked.clone().map(|(_, count, _)| count).max()?;
-    let largest = ranked.filter(|(_, count, _)| *count == most).map(|(name, _, gain)| (name, gain));
-    let (name, gain) = titles::largest_above_1(largest)?;
+    let (most, gains) = at_most(&ranked(of_sizes))?;
+    let (name, gain) = titles::largest_above_1(gains)?;
     Some(format!("At {most} spheres, {name} is {} times as fast as testing every sphere", titles::told(gain)?))
 }
 
@@ -112,43 +108,81 @@ fn gains<'a>(places: &Places<'a>, yardstick: &str, stopping: Stopping) -> Result
     Ok(gathered(found.map(|((name, place), gain)| (name, (place, gain)))))
 }
 
-/// A finding: the number of primitives from which a hierarchy is faster, and its gain in the largest scene that was
-/// also rendered without it.
-fn crossover(name: &str, gains: &Gains) -> Option<Block> {
-    let ranked = || gains.iter().filter(|(_, gain)| !gain.is_partial);
-    let (most, largest) = ranked().next_back()?;
-    let slower = ranked().rev().find(|(_, gain)| gain.interval.low <= 1.0);
-    let faster = ranked().find(|(count, _)| slower.is_none_or(|(slower, _)| count > slower));
+/// The largest of some gains, with the names of those that are not told apart from it.
+fn largest<'a>(gains: impl IntoIterator<Item = (&'a str, Ratio)>) -> Option<(&'a str, Ratio, String)> {
+    let gains: Vec<(&str, Ratio)> = gains.into_iter().collect();
+    let (name, most) = *gains.iter().max_by(|a, b| a.1.value.total_cmp(&b.1.value))?;
+    let is_open = |gain: &Ratio| gain.interval.high >= most.interval.low;
+    let open = gains.iter().filter(|(other, gain)| *other != name && is_open(gain));
+    let open: Vec<&str> = open.map(|(other, _)| *other).collect();
+    let remark = if open.is_empty() { String::new() } else { format!(", not told apart from {}", open.join(" and ")) };
+    Some((name, most, remark))
+}
+
+/// The gains that are ranked, each with its accelerator and its number.
+fn ranked<'a>(gains: &BTreeMap<&'a str, Gains>) -> Vec<(&'a str, u64, Ratio)> {
+    let whole = |(name, own): (&&'a str, &Gains)| {
+        let name = *name;
+        let whole = own.iter().filter(|(_, gain)| !gain.is_partial);
+        whole.map(move |(number, gain)| (name, *number, *gain)).collect::<Vec<_>>()
+    };
+    gains.iter().flat_map(whole).collect()
+}
+
+/// The largest number with gains, and these.
+fn at_most<'a>(ranked: &[(&'a str, u64, Ratio)]) -> Option<(u64, Vec<(&'a str, Ratio)>)> {
+    let most = ranked.iter().map(|(_, number, _)| *number).max()?;
+    let own = ranked.iter().filter(|(_, number, _)| *number == most);
+    Some((most, own.map(|(name, _, gain)| (*name, *gain)).collect()))
+}
+
+/// A finding: the largest gain in the largest scene that was also rendered without a hierarchy, and the number of spheres
+/// from which on it is certain.
+fn crossover(of_sizes: &BTreeMap<&str, Gains>) -> Option<Block> {
+    let ranked = ranked(of_sizes);
+    let (most, gains) = at_most(&ranked)?;
+    let (name, gain, open) = largest(gains)?;
+    let own = || ranked.iter().filter(|(other, ..)| *other == name);
+    let slower = own().rev().find(|(_, _, gain)| gain.interval.low <= 1.0).map(|(_, count, gain)| (*count, *gain));
+    let faster = own().map(|(_, count, _)| *count).find(|count| slower.is_none_or(|(slower, _)| *count > slower));
     let from = match (slower, faster) {
-        (None, Some((count, _))) => {
-            format!("is faster than testing every sphere from the smallest number on, {count}")
+        (None, Some(count)) => format!("It is faster from the smallest number on, {count}."),
+        (Some((slower, gain)), Some(count)) => {
+            let there = if gain.interval.high < 1.0 { "it is slower" } else { "that is not certain" };
+            format!("It is faster from {count} spheres on; at {slower} {there}.")
         }
-        (Some((slower, _)), Some((count, _))) => {
-            format!(
-                "is faster than testing every sphere from {count} spheres on (the interval lies above 1), and at {slower} that is not certain"
-            )
-        }
-        (_, None) => "is at no number faster than testing every sphere by an interval that lies above 1".to_string(),
+        (_, None) => "At the largest number that is not certain.".to_string(),
     };
     Some(Block::finding(format!(
-        "{name} {from}; at {most} spheres it is {:.1} times as fast, {}.",
-        largest.value,
-        with_level(&largest.interval, 1)
+        "The largest gain at {most} spheres is that of {name}{open}: {} times as fast as testing every sphere. {from}",
+        with_interval(gain.value, &gain.interval, 1)
     )))
+}
+
+/// Scene and size of an image that was rendered at several numbers of samples.
+fn image(samples: &Places<'_>) -> String {
+    let first = samples.values().flat_map(BTreeMap::values).flatten().next();
+    first.map_or_else(String::new, |row| format!("{}, {}x{}", row.scene, row.width, row.height))
 }
 
 /// The gain at each number of samples, in a scene that is not generated. A gain that does not depend on the samples
 /// lies in every interval.
-fn against_spp(results: &Results, samples: &Places<'_>, gains: &[(usize, &str, Gains)]) -> Vec<Block> {
-    if gains.iter().all(|(.., gains)| gains.is_empty()) {
+fn against_spp(
+    results: &Results,
+    samples: &Places<'_>,
+    accelerators: &[(usize, &str)],
+    gains: &BTreeMap<&str, Gains>,
+) -> Vec<Block> {
+    if gains.values().all(Vec::is_empty) {
         return Vec::new();
     }
     let point = |(spp, gain): &(u64, Ratio)| Estimated::from(*gain).above(*spp as f64);
-    let series = gains
-        .iter()
-        .map(|(place, name, gains)| Series::new(*name, Look::nth(*place), gains.iter().map(point).collect()));
-    let largest = gains.iter().flat_map(|(_, name, gains)| gains.iter().map(move |(_, gain)| (*name, *gain)));
-    let result = titles::largest_above_1(largest).and_then(|(name, gain)| {
+    let series = accelerators.iter().filter_map(|(place, name)| {
+        Some(Series::new(*name, Look::nth(*place), gains.get(name)?.iter().map(point).collect()))
+    });
+    let ranked = ranked(gains);
+    let result = titles::largest_above_1(ranked.iter().map(|(name, _, gain)| (*name, *gain)));
+    let result = result.and_then(|(name, gain)| {
         Some(format!("{name} renders up to {} times as fast as without a hierarchy", titles::told(gain)?))
     });
     let mut chart = LineChart::new(
@@ -157,40 +191,71 @@ fn against_spp(results: &Results, samples: &Places<'_>, gains: &[(usize, &str, G
         Axis::linear("time without / time with").including([1.0]),
         series.collect(),
     );
-    let first = samples.values().flat_map(BTreeMap::values).flatten().next();
-    let image = first.map_or_else(String::new, |row| format!("{}, {}x{}, ", row.scene, row.width, row.height));
-    chart.subtitle = format!("{image}{}", results.run.machine.line());
-    chart.caption = ratio_bars(gains.iter().flat_map(|(.., gains)| gains).map(|(_, gain)| *gain));
+    chart.subtitle = joined([image(samples), results.run.machine.line()]);
+    chart.caption = ratio_bars(gains.values().flatten().map(|(_, gain)| *gain));
     chart.dodge = 4.0;
-    let finding = |(_, name, gains): &(usize, &str, Gains)| {
-        let gains: Vec<_> = gains.iter().filter(|(_, gain)| !gain.is_partial).collect();
-        let low = gains.iter().map(|(_, gain)| gain.interval.low).fold(0.0, f64::max);
-        let high = gains.iter().map(|(_, gain)| gain.interval.high).fold(f64::INFINITY, f64::min);
-        let listed: Vec<String> = gains.iter().map(|(spp, gain)| format!("{:.2} at {spp}", gain.value)).collect();
+    let finding = at_most(&ranked).and_then(|(spp, gains)| {
+        let (name, gain, open) = largest(gains)?;
+        let own = || ranked.iter().filter(|(other, ..)| *other == name).map(|(.., gain)| gain.interval);
+        let low = own().map(|interval| interval.low).fold(0.0, f64::max);
+        let high = own().map(|interval| interval.high).fold(f64::INFINITY, f64::min);
         let verdict = if low <= high {
-            format!("factors from {low:.2} to {high:.2} lie in every interval, so no dependence on the samples is seen")
+            format!("factors from {low:.2} to {high:.2} lie in its interval at every number of samples, so no dependence on the samples is seen")
         } else {
-            "no factor lies in every interval".to_string()
+            "no factor lies in its intervals at all numbers of samples".to_string()
         };
-        Block::finding(format!(
-            "Times without a hierarchy over times with {name}, by samples per pixel: {}; {verdict}.",
-            listed.join(", ")
-        ))
-    };
-    let findings = gains.iter().filter(|(.., gains)| gains.iter().any(|(_, gain)| !gain.is_partial)).map(finding);
-    [Block::figure("acceleration-spp", chart)].into_iter().chain(findings).collect()
+        Some(Block::finding(format!(
+            "The largest gain at {spp} samples per pixel is that of {name}{open}: {} times as fast as without a hierarchy; {verdict}.",
+            with_interval(gain.value, &gain.interval, 2)
+        )))
+    });
+    [Block::figure("acceleration-spp", chart)].into_iter().chain(finding).collect()
 }
 
-/// How many times as long the yardstick takes for each further sample. A difference of two times contains no fixed
-/// cost, so a fixed cost cannot bend this factor as it bends the gain at few samples.
-fn marginal(rows: &[&Row], yardstick: &str, name: &str, stopping: Stopping) -> Result<Vec<Block>> {
+/// A gain over the yardstick, for the table.
+struct Gain {
+    workload: String,
+    accelerator: String,
+    told: Estimated,
+}
+
+/// The gains of a list in the order of their numbers.
+fn listed(gains: &BTreeMap<&str, Gains>, workload: impl Fn(u64) -> String) -> Vec<Gain> {
+    let all = gains.iter().flat_map(|(name, own)| own.iter().map(move |(number, gain)| (*number, *name, *gain)));
+    let mut all: Vec<(u64, &str, Ratio)> = all.collect();
+    all.sort_by_key(|(number, ..)| *number);
+    let gain = |(number, name, gain): (u64, &str, Ratio)| Gain {
+        workload: workload(number),
+        accelerator: name.to_string(),
+        told: gain.into(),
+    };
+    all.into_iter().map(gain).collect()
+}
+
+fn gain_table(gains: Vec<Gain>, yardstick: &str) -> Option<Block> {
+    if gains.is_empty() {
+        return None;
+    }
+    let partial = |told: &Estimated| if told.is_partial { "fewer repetitions than others: not comparable" } else { "" };
+    let title = format!("How many times as long {yardstick} takes");
+    let table = Block::table("acceleration-gains", title, gains)
+        .column("workload", |gain| gain.workload.clone())
+        .column("accelerator", |gain| gain.accelerator.clone())
+        .estimated(format!("time with {yardstick} / time"), Decimals(2), |gain| gain.told)
+        .column("remark", |gain| partial(&gain.told).to_string());
+    Some(table.end())
+}
+
+/// How many times as long the yardstick takes for each further sample, the largest image last. A difference of two times
+/// contains no fixed cost, so a fixed cost cannot bend this factor as it bends the gain at few samples.
+fn further(rows: &[&Row], accelerators: &[(usize, &str)], yardstick: &str, stopping: Stopping) -> Result<Vec<Gain>> {
     let any_samples: Forget = |image, schedule| {
         any_accelerator(image, schedule);
         image.spp = 0;
     };
-    let by_size = group(rows.iter().copied(), |row| (row.width, row.height));
-    let mut findings = Vec::new();
-    for ((width, height), rows) in by_size {
+    let by_image = group(rows.iter().copied(), |row| (row.width, row.height, &row.scene));
+    let mut found = Vec::new();
+    for ((width, height, scene), rows) in by_image {
         let spp: BTreeSet<u32> = rows.iter().map(|row| row.spp).collect();
         let Some((least, most)) = spp.first().zip(spp.last()).filter(|(least, most)| least < most) else { continue };
         let seconds = |name: &str, spp: u32| {
@@ -198,15 +263,28 @@ fn marginal(rows: &[&Row], yardstick: &str, name: &str, stopping: Stopping) -> R
             Repeats::of(own, any_samples, |row| row.makespan_s)
         };
         let further = |name: &str| -> Result<Repeats> { Ok(seconds(name, *most)?.minus(&seconds(name, *least)?)) };
-        let Some(ratio) = further(yardstick)?.over(&further(name)?).median(stopping) else { continue };
-        let interval = ratio.interval.map_or_else(String::new, |interval| format!(", {}", with_level(&interval, 2)));
-        findings.push(Block::finding(format!(
-            "For each sample from {least} to {most} at {width}x{height}, {yardstick} takes {:.2} times as long as {name}{interval}: \
-             differences of times, in which a fixed cost has no part.",
-            ratio.value
-        )));
+        let of_yardstick = further(yardstick)?;
+        for (_, name) in accelerators.iter().filter(|(_, name)| *name != yardstick) {
+            let told = of_yardstick.over(&further(name)?).median(stopping);
+            // Renders that take no longer for more samples have no time of a further one.
+            let Some(told) = told.filter(|told| told.value.is_finite()) else { continue };
+            let workload = format!("{scene}, {width}x{height}, each sample from {least} to {most}");
+            found.push(Gain { workload, accelerator: (*name).to_string(), told });
+        }
     }
-    Ok(findings)
+    Ok(found)
+}
+
+/// A finding about the further samples of the largest image.
+fn marginal(further: &[Gain], yardstick: &str) -> Option<Block> {
+    let workload = &further.last()?.workload;
+    let own = further.iter().filter(|gain| gain.workload == *workload);
+    let own = own.filter_map(|gain| Some((gain.accelerator.as_str(), Ratio::of(gain.told)?)));
+    let (name, gain, open) = largest(own)?;
+    Some(Block::finding(format!(
+        "{workload}: {yardstick} takes {} times as long as {name}{open}. A difference of times contains no fixed cost.",
+        with_interval(gain.value, &gain.interval, 2)
+    )))
 }
 
 fn table(results: &Results, accelerators: &[(usize, &str)]) -> Block {

@@ -59,18 +59,19 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 fn finding(all: &[Against<'_>]) -> Option<Block> {
     let mut ranked = all.iter().filter(|against| !against.speedup.is_partial);
     let most = ranked.next()?;
-    let least = ranked.next_back().unwrap_or(most);
     let verdict = if most.is_superlinear() { "superlinear" } else { "not superlinear" };
-    Some(Block::finding(format!(
-        "{}: {:.2} times as fast ({}), {verdict} on {} workers; {}: {:.2} times ({}). The schedule is the same; only the baseline differs.",
-        most.name(),
-        most.speedup.value,
-        with_level(&most.speedup.interval, 2),
-        most.workers(),
-        least.name(),
-        least.speedup.value,
-        with_level(&least.speedup.interval, 2),
-    )))
+    let told = |Against { speedup, .. }: &Against<'_>, times: &str| {
+        format!("{:.2} {times} ({})", speedup.value, with_level(&speedup.interval, 2))
+    };
+    let (name, workers) = (most.name(), most.workers());
+    let highest = format!("{name}: {}, {verdict} on {workers} workers", told(most, "times as fast"));
+    Some(Block::finding(match ranked.next_back() {
+        Some(least) => {
+            let (name, told) = (least.name(), told(least, "times"));
+            format!("{highest}; {name}: {told}. The schedule is the same; only the baseline differs.")
+        }
+        None => format!("{highest}."),
+    }))
 }
 
 fn table(all: &[Against<'_>]) -> Block {

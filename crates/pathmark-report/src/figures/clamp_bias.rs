@@ -103,7 +103,7 @@ fn recursion(by_clamp: &BTreeMap<(&str, u32), Vec<&Row>>, truth: f64) -> Option<
         own.filter_map(|((_, spp), rows)| Some((*spp, 100.0 * (1.0 - radiance(rows)? / truth)))).collect();
     let (first, last) = (losses.first()?, losses.last()?);
     Some(Block::finding(format!(
-        "Clamped at every recursion, as report B does, the image loses {:.1} % of the light at {} spp and {:.1} % at {}: every path is cut by itself, so no number of samples brings it back.",
+        "Clamped at every recursion, the image loses {:.1} % of the light at {} spp and {:.1} % at {}: every path is cut by itself, so no number of samples brings it back.",
         first.1, first.0, last.1, last.0
     )))
 }

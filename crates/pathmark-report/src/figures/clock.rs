@@ -34,11 +34,12 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let claimed = median(&whole.map(|told| told.value).collect::<Vec<f64>>());
     let finding = claimed.map(|claimed| {
         Block::finding(format!(
-            "Timed with clock() of the C library, {processors} threads would seem to bring a speedup of {claimed:.2} \
-             (median over the strategies): clock() adds up the CPU time of all threads, and the work stays the same. All other numbers here are wall time."
+            "Timed with clock() of the C library, {} would seem to bring a speedup of {claimed:.2} \
+             (median over the strategies): clock() adds up the CPU time of all threads, and the work stays the same. All other numbers here are wall time.",
+            counted(processors, "thread")
         ))
     });
-    let table = Block::table("clock", "Wall time and CPU time: medians over repetitions", &lines)
+    let table = Block::table("clock", "Wall time and CPU time: typical values over repetitions", &lines)
         .column("image", |line| line.image.clone())
         .column("strategy", |line| line.schedule.name.clone())
         .column("pieces", |line| line.schedule.key.decomposition.clone())

@@ -28,8 +28,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let costs = tiles.iter().map(|tile| tile.value);
     let (least, most) = (costs.clone().fold(f64::INFINITY, f64::min), costs.fold(0.0, f64::max));
     // A single run may have been disturbed.
-    let result =
-        (traces.len() > 1).then(|| format!("The dearest tile takes {:.1} times as long as the cheapest", most / least));
+    let result = (traces.len() > 1)
+        .then(|| format!("The most expensive tile takes {:.1} times as long as the cheapest", most / least));
     let name = joined([results.series_name(record), format!("{}, {} spp", record.decomposition, record.spp)]);
     let map = HeatMap {
         title: Title::new("What a tile costs").with_result(result),

@@ -56,8 +56,8 @@ pub(super) fn blocks(results: &Results, scenes: &[String]) -> Result<Vec<Block>>
         |step: &Step<'_>| step.ratios.iter().map(|ratio| ratio.map(|ratio| Estimated::from(ratio).dot())).collect();
     let axis = Axis::linear("processor time of a sample / in the scene above").including([0.95, 1.05]);
     let rows = steps.iter().map(|step| DotRow::new(step.scene, dots(step))).collect();
-    let dearest = titles::largest_above_1(steps.iter().filter_map(|step| Some((step.scene, step.ratios[0]?))));
-    let result = dearest.map_or_else(
+    let most = titles::largest_above_1(steps.iter().filter_map(|step| Some((step.scene, step.ratios[0]?))));
+    let result = most.map_or_else(
         || "No added effect makes a sample take longer beyond the noise".to_string(),
         |(scene, ratio)| format!("{scene} adds the most: a sample takes {}", titles::longer(ratio.value)),
     );

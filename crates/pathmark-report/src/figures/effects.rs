@@ -182,7 +182,7 @@ fn prices(
     [Block::figure(stem, plot)].into_iter().chain(findings).chain([table]).collect()
 }
 
-/// The result in a line: the dearest effect that is compiled in but not used, or the most that one may cost.
+/// The result in a line: the effect that costs most if it is compiled in but not used, or the most that one may cost.
 fn result(found: &[Priced<'_>]) -> Option<String> {
     let ratios = || found.iter().filter_map(|found| Some((found.price.effect.as_str(), found.unused_ratio()?)));
     if let Some((effect, Ratio { value, interval, .. })) = titles::largest_above_1(ratios()) {
@@ -201,7 +201,7 @@ fn result(found: &[Priced<'_>]) -> Option<String> {
 fn generality(found: &[Priced<'_>], stem: &'static str) -> Option<[Block; 2]> {
     let ratios = || found.iter().filter_map(|found| Some((found.price.effect.as_str(), found.unused_ratio()?)));
     let ranked = ratios().filter(|(_, ratio)| !ratio.is_partial);
-    let (dearest, ratio) = ranked.max_by(|a, b| a.1.value.total_cmp(&b.1.value))?;
+    let (most, ratio) = ranked.max_by(|a, b| a.1.value.total_cmp(&b.1.value))?;
     let sides = Sides::of(ratios().map(|(_, ratio)| ratio));
     let verdict = match sides.above {
         0 => "None of them costs more than the noise".to_string(),
@@ -210,14 +210,14 @@ fn generality(found: &[Priced<'_>], stem: &'static str) -> Option<[Block; 2]> {
     let percent = Estimated::from(ratio).times(100.0);
     let (low, high) = percent.bar().unwrap_or_default();
     let text = format!(
-        "An effect that the scene does not use costs up to {:.1} % ({:.1} to {:.1}; {dearest}) of the time if it is compiled in. An absent one costs nothing: it is not compiled in.",
+        "An effect that the scene does not use costs up to {:.1} % ({:.1} to {:.1}; {most}) of the time if it is compiled in. An absent one costs nothing: it is not compiled in.",
         percent.value - 100.0,
         low - 100.0,
         high - 100.0,
     );
     let answer = Block::Answer { text, stem, is_told: high - low <= 2.0 * MOST_PERCENT };
     let finding = Block::finding(format!(
-        "An effect that is compiled into the {} kernel but not used by the scene makes a sample take {} times as long at most ({dearest}). {verdict}.",
+        "An effect that is compiled into the {} kernel but not used by the scene makes a sample take {} times as long at most ({most}). {verdict}.",
         found.first()?.price.absent.kernel,
         ratio.in_words(3),
     ));

@@ -4,6 +4,7 @@ use crate::analysis::price::equal_error;
 use crate::contenders::{Contender, contenders};
 use crate::kernel::DEVICE_NAME;
 use crate::prelude::*;
+use crate::words::with_interval;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
@@ -72,8 +73,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         return Ok(vec![Block::notice("No two kernels rendered the same, so there is no ratio of them.")]);
     }
     let mut blocks = vec![Block::figure("kernels", plot(results, &works, &yardstick))];
-    let scenes = contenders(results)?;
-    blocks.extend(scenes.iter().filter_map(|(scene, all)| finding(scene, all, &yardstick, goal)));
+    blocks.extend(finding(&fastest(&works, &yardstick), &yardstick));
+    blocks.extend(at_equal_error(results, &yardstick, goal)?);
     let mut table = Block::table("kernels", "Samples and rays per second, medians", works.iter().flatten())
         .column("workload", |line| line.name.clone())
         .column("threads", |line| line.threads.to_string())
@@ -96,38 +97,84 @@ impl Line<'_> {
     }
 }
 
-/// The gain of all choices together at the same error, for each number of threads.
-fn finding(scene: &str, contenders: &[Contender], yardstick: &str, goal: f64) -> Option<Block> {
-    let of = |threads: usize| contenders.iter().filter(move |contender| contender.schedule.threads == threads);
-    let slowest = of(1).find(|contender| contender.kernel == yardstick)?;
-    let gain = |contender: &Contender| equal_error(&slowest.renderer, &contender.renderer, goal);
-    let mut sentences = Vec::new();
-    let counts: BTreeSet<usize> = contenders.iter().map(|contender| contender.schedule.threads).collect();
-    for threads in counts {
-        let (best, gain) = of(threads)
-            .filter_map(|contender| Some((contender, gain(contender)?)))
-            .max_by(|a, b| a.1.value.total_cmp(&b.1.value))?;
-        let who = if threads == 1 { "one thread".to_string() } else { format!("{threads} threads") };
-        sentences.push(format!(
-            "on {who} {:.1} times as fast (95 % {:.1} to {:.1}; {})",
-            gain.value, gain.interval.low, gain.interval.high, best.name
-        ));
+/// The workloads on one thread: on several, schedules would affect the ratios.
+fn alone<'a, 'b>(works: &'a [Vec<Line<'b>>]) -> impl Iterator<Item = &'a Vec<Line<'b>>> {
+    works.iter().filter(|lines| lines[0].threads == 1)
+}
+
+/// The kernel with the largest ratio of each workload on one thread, in the order of the ratios. Partial ratios are not
+/// ranked.
+fn fastest<'a, 'b>(works: &'a [Vec<Line<'b>>], yardstick: &str) -> Vec<(&'a Line<'b>, Ratio)> {
+    let largest = alone(works).filter_map(|lines| {
+        let others = lines.iter().filter(|line| line.kernel != yardstick);
+        let ratios = others.filter_map(|line| Some((line, line.ratio.filter(|ratio| !ratio.is_partial)?)));
+        ratios.max_by(|a, b| a.1.value.total_cmp(&b.1.value))
+    });
+    let mut found: Vec<(&Line<'_>, Ratio)> = largest.collect();
+    found.sort_by(|a, b| a.1.value.total_cmp(&b.1.value));
+    found
+}
+
+fn is_faster((_, ratio): &(&Line<'_>, Ratio)) -> bool {
+    ratio.interval.low > 1.0
+}
+
+/// A finding: the workloads that gain the least and the most from the fastest kernel.
+fn finding(fastest: &[(&Line<'_>, Ratio)], yardstick: &str) -> Option<Block> {
+    let told = |(line, ratio): &(&Line<'_>, Ratio)| {
+        let times = with_interval(ratio.value, &ratio.interval, 2);
+        format!("{times} times as fast as {yardstick} on {} ({})", line.name, line.kernel)
+    };
+    Some(Block::finding(match (fastest.first()?, fastest.last()?) {
+        _ if !fastest.iter().any(is_faster) => {
+            format!("On one thread no kernel is faster than {yardstick} beyond the noise.")
+        }
+        (_, most) if fastest.len() == 1 => format!("On one thread the fastest kernel is {}.", told(most)),
+        (least, most) => format!("On one thread the fastest kernel is {}, and {}.", told(least), told(most)),
+    }))
+}
+
+/// The gain of all choices together at the same error, over the yardstick on one thread: a finding for each scene, and a
+/// table by numbers of threads.
+fn at_equal_error(results: &Results, yardstick: &str, goal: f64) -> Result<Vec<Block>> {
+    let scenes = contenders(results)?;
+    let (mut blocks, mut lines) = (Vec::new(), Vec::new());
+    for (scene, all) in &scenes {
+        let of = |threads: usize| all.iter().filter(move |contender| contender.schedule.threads == threads);
+        let Some(slowest) = of(1).find(|contender| contender.kernel == yardstick) else { continue };
+        let counts: BTreeSet<usize> = all.iter().map(|contender| contender.schedule.threads).collect();
+        let of_counts = counts.into_iter().filter_map(|threads| {
+            let gain = |contender: &Contender| equal_error(&slowest.renderer, &contender.renderer, goal);
+            let gains = of(threads).filter_map(|contender| Some((contender, gain(contender)?)));
+            gains.max_by(|a, b| a.1.value.total_cmp(&b.1.value))
+        });
+        let best: Vec<(&Contender, Estimate)> = of_counts.collect();
+        let Some((fastest, gain)) = best.iter().max_by(|a, b| a.1.value.total_cmp(&b.1.value)) else { continue };
+        if std::ptr::eq(*fastest, slowest) {
+            continue;
+        }
+        let times = with_interval(gain.value, &gain.interval, 1);
+        let (fastest, slowest) = (&fastest.name, &slowest.name);
+        let text = format!("{scene}: {fastest} is {times} times as fast as {slowest} to an RMSE of {goal}.");
+        blocks.push(Block::finding(text));
+        lines.extend(best.into_iter().map(|(contender, gain)| (scene, contender, slowest, gain)));
     }
-    let of_slowest = &slowest.name;
-    Some(Block::finding(format!("{scene}, to an RMSE of {goal}, against {of_slowest}: {}.", sentences.join(", "))))
+    if !lines.is_empty() {
+        let title = format!("Times as fast to an RMSE of {goal}, all choices together");
+        let table = Block::table("kernels-at-equal-error", title, lines)
+            .column("scene", |(scene, ..)| (*scene).clone())
+            .column("threads", |(_, contender, ..)| contender.schedule.threads.to_string())
+            .column("fastest", |(_, contender, ..)| contender.name.clone())
+            .column("against", |(_, _, slowest, _)| (*slowest).clone())
+            .estimated("times as fast", Decimals(1), |(.., gain)| Estimated::from(*gain));
+        blocks.push(table.end());
+    }
+    Ok(blocks)
 }
 
 /// The result in a line: how many times as fast the fastest kernel of each workload is.
-fn result<'a>(works: impl Iterator<Item = &'a [Line<'a>]>, yardstick: &str) -> Option<String> {
-    let fastest = works.filter_map(|lines| {
-        let others = lines.iter().filter(|line| line.kernel != yardstick);
-        let ratios = others.filter_map(|line| line.ratio).filter(|ratio| !ratio.is_partial);
-        ratios.max_by(|a, b| a.value.total_cmp(&b.value))
-    });
-    let mut fastest: Vec<Ratio> = fastest.collect();
-    fastest.sort_by(|a, b| a.value.total_cmp(&b.value));
-    let (least, most) = (fastest.first()?, fastest.last()?);
-    let is_faster = |ratio: &Ratio| ratio.interval.low > 1.0;
+fn result(fastest: &[(&Line<'_>, Ratio)], yardstick: &str) -> Option<String> {
+    let ((_, least), (_, most)) = (fastest.first()?, fastest.last()?);
     if !fastest.iter().any(is_faster) {
         return Some(format!("No kernel is faster than the {yardstick} kernel beyond the noise"));
     }
@@ -135,7 +182,7 @@ fn result<'a>(works: impl Iterator<Item = &'a [Line<'a>]>, yardstick: &str) -> O
         titles::told(*most)?
     } else if fastest.iter().all(is_faster) {
         format!("{:.1} to {:.1}", least.value, most.value)
-    } else if !is_faster(most) {
+    } else if most.interval.low <= 1.0 {
         return None;
     } else {
         format!("up to {:.1}", most.value)
@@ -143,20 +190,18 @@ fn result<'a>(works: impl Iterator<Item = &'a [Line<'a>]>, yardstick: &str) -> O
     Some(format!("The fastest kernel is {factor} times as fast as the {yardstick} kernel"))
 }
 
-/// Ratios on one thread: on several, schedules would affect them.
 fn plot(results: &Results, works: &[Vec<Line<'_>>], yardstick: &str) -> DotPlot {
     let kernels: BTreeSet<&str> = works.iter().flatten().map(|line| line.kernel.as_str()).collect();
     let kernels = || kernels.iter().copied().filter(|kernel| *kernel != yardstick);
-    let alone = || works.iter().filter(|lines| lines[0].threads == 1);
     let ratio = |lines: &[Line<'_>], kernel: &str| lines.iter().find(|line| line.kernel == kernel)?.ratio;
-    let rows = alone().map(|lines| {
+    let rows = alone(works).map(|lines| {
         let dots = kernels().map(|kernel| Some(Estimated::from(ratio(lines, kernel)?).dot()));
         DotRow::new(&lines[0].name, dots.collect())
     });
     let axis = Axis::log(format!("samples per second / those of the {yardstick} kernel")).including([1.0]);
     let has_devices = kernels().any(|kernel| kernel.contains(DEVICE_NAME));
     let title = if has_devices { "What SIMD lanes and devices are worth" } else { "What SIMD lanes are worth" };
-    let result = result(alone().map(Vec::as_slice), yardstick);
+    let result = result(&fastest(works, yardstick), yardstick);
     let title = Title::new(title).with_result(result);
     let mut plot = DotPlot::new(title, axis, rows.collect()).grouped(kernels());
     plot.guides = vec![(1.0, format!("the {yardstick} kernel"))];
@@ -165,7 +210,7 @@ fn plot(results: &Results, works: &[Vec<Line<'_>>], yardstick: &str) -> DotPlot 
         .chain(results.run.devices.clone())
         .collect::<Vec<_>>()
         .join("; ");
-    let shown = alone().flatten().filter(|line| line.kernel != yardstick);
+    let shown = alone(works).flatten().filter(|line| line.kernel != yardstick);
     let bars = bars(shown.filter_map(|line| line.ratio));
     plot.caption = format!("Ratios of renders of the same image. {bars}");
     plot

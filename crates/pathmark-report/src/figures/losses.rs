@@ -12,8 +12,13 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let reason = "No schedule of several workers has a serial run beside it, so its losses are unknown.";
         return Ok(vec![Block::notice(reason)]);
     }
-    // A loss over fewer repetitions than the others have is not ranked.
-    let losses = found.iter().filter_map(|own| Some((own, own.largest_loss()?)));
+    // A loss over fewer repetitions than the others have is not ranked. Nor are those of other numbers of threads than the
+    // title of the speedups is about: a thread for each processor, or fewer where nothing ran so.
+    let processors = results.run.machine.processors;
+    let place = |own: &Explained| (own.threads == processors, own.threads < processors);
+    let usual = found.iter().map(place).max();
+    let losses = found.iter().filter(|own| Some(place(own)) == usual);
+    let losses = losses.filter_map(|own| Some((own, own.largest_loss()?)));
     let losses = losses.filter(|(_, (_, told))| !told.is_partial);
     let worst = losses.max_by(|a, b| a.1.1.value.total_cmp(&b.1.1.value));
     let mut blocks = vec![Block::figure("losses", chart(results, &found, worst))];

@@ -30,14 +30,20 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         Line { output, decomposition, threads, rows: of(cell), ratio: ratios.get(&cell).copied() }
     });
     let lines: Vec<Line<'_>> = lines.collect();
-    let dot = |line: &Line<'_>| Some(Estimated::from(line.ratio?).dot());
-    let rows = lines
-        .chunk_by(|a, b| a.output == b.output)
-        .map(|own| DotRow::new(own[0].output, own.iter().map(dot).collect()));
+    let crews: BTreeSet<usize> = lines.iter().map(|line| line.threads).collect();
+    let of_pieces = lines.chunk_by(|a, b| (a.output, a.decomposition) == (b.output, b.decomposition));
+    let rows = of_pieces.map(|own| {
+        let ratio = |threads: &usize| own.iter().find(|line| line.threads == *threads)?.ratio;
+        let dots = crews.iter().map(|threads| Some(Estimated::from(ratio(threads)?).dot()));
+        DotRow::new(format!("{}, {}", own[0].output, own[0].decomposition), dots.collect())
+    });
     let slowest = titles::largest_above_1(lines.iter().filter_map(|line| Some((line, line.ratio?))));
     let result = slowest.map_or_else(
         || format!("No output takes longer than {yardstick} beyond the noise"),
-        |(line, ratio)| format!("{} takes {} with {}", line.output, titles::longer(ratio.value), line.decomposition),
+        |(line, ratio)| {
+            let crew = counted(line.threads, "thread");
+            format!("{} takes {} with {}, {crew}", line.output, titles::longer(ratio.value), line.decomposition)
+        },
     );
     let mut plot = DotPlot::new(
         Title::new(format!("Time by output, against {yardstick}"))
@@ -45,7 +51,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         Axis::linear(format!("time / time with {yardstick}")).including([0.95, 1.05]),
         rows.filter(|row| row.dots.iter().any(Option::is_some)).collect(),
     )
-    .grouped(kinds.iter().map(|(decomposition, threads)| format!("{decomposition}, {}", counted(*threads, "thread"))));
+    .in_areas(crews.iter().map(|threads| counted(*threads, "thread")));
     plot.guides = vec![(1.0, yardstick.clone())];
     plot.subtitle = results.workload();
     plot.caption = ratio_bars(lines.iter().filter_map(|line| line.ratio));

@@ -64,7 +64,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let figure = |stem: &'static str, title: Title, axis: Axis, lines: Lines| {
         (!lines.is_empty()).then(|| Block::figure(stem, chart(title, axis, lines)))
     };
-    let title = Title::new("Time against sections of the image (report D)").with_result(result);
+    let title = Title::new("Time against sections of the image").with_result(result);
     let grid = figure("sections", title, sections, gathered(by_grid));
     let by_threads = gathered(by_threads);
     let threads = figure("threads", "Time against threads, the pieces being the same".into(), threads, by_threads);
@@ -110,7 +110,7 @@ fn compared(results: &Results, claim: &Claim) -> Result<Option<(String, Block)>>
     let Some((sections, few)) = in_words(&against_sections).zip(in_words(&against_few)) else { return Ok(None) };
     let finding = Block::finding(format!(
         "A thread for each of {least} to {most} sections takes, against one for each of {} sections, {sections}; against a thread for each of the {} processors on the same {least} to {most} sections, {few}. \
-         The first is what report D saw; the second is what its threads, apart from the smaller pieces, gain or cost.",
+         The first ratio has smaller pieces and more threads; the second shows what the threads alone gain or cost.",
         against.trim_start_matches(GRID),
         processors,
     ));

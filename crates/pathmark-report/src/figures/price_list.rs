@@ -61,8 +61,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(blocks)
 }
 
-/// The result in a line, in the scene with the most contenders: the cheapest and the dearest at the error that most of
-/// them reach.
+/// The result in a line, in the scene with the most contenders: the lowest and the highest price of the error that most
+/// of them reach.
 fn result(scenes: &BTreeMap<String, Vec<Contender>>, goals: &[Positive]) -> Option<String> {
     let (scene, all) = scenes.iter().rev().max_by_key(|(_, contenders)| contenders.len())?;
     let priced = |goal: f64| -> Vec<(&str, Estimated)> {

@@ -196,16 +196,24 @@ fn findings(lines: &[&Line<'_>], goals: &[Positive]) -> Option<[Block; 2]> {
     let falling = goals.iter().map(|goal| measured(goal.0));
     let (goal, found) = falling.max_by(|a, b| a.1.len().cmp(&b.1.len()).then(b.0.total_cmp(&a.0)))?;
     let cheapest = found.iter().min_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds))?;
-    let dearest = found.iter().max_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds))?;
+    let most_expensive = found.iter().max_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds))?;
     let told = |(name, found): &(String, Crossing)| {
         let interval = found.interval.map_or_else(String::new, |interval| format!(" ({})", with_level(&interval, 3)));
         format!("{:.3} s{interval} with {name}", found.seconds)
     };
     let (scene, ..) = lines.first()?.of.setting;
-    let (least, most) = (cheapest.1.interval, dearest.1.interval);
-    let is_told = least.zip(most).is_some_and(|(least, most)| least.high < most.low);
-    let text = format!("An RMSE of {goal} on {scene} costs {}, and {}.", told(dearest), told(cheapest));
-    let finding = format!("{scene}: an RMSE of {goal} costs {} and {}, both measured.", told(cheapest), told(dearest));
+    let (least, most) = (cheapest.1.interval, most_expensive.1.interval);
+    let (is_told, text, finding) = if found.len() == 1 {
+        let costs = format!("an RMSE of {goal} costs {}", told(cheapest));
+        (least.is_some(), format!("On {scene}, {costs}."), format!("{scene}: {costs}, measured."))
+    } else {
+        let [low, high] = [told(cheapest), told(most_expensive)];
+        (
+            least.zip(most).is_some_and(|(least, most)| least.high < most.low),
+            format!("An RMSE of {goal} on {scene} costs {high}, and {low}."),
+            format!("{scene}: an RMSE of {goal} costs {low} and {high}, both measured."),
+        )
+    };
     Some([Block::Answer { text, stem: "rmse-against-time", is_told }, Block::finding(finding)])
 }
 
@@ -243,7 +251,7 @@ fn points(lines: &[Line<'_>]) -> Block {
         .column("scene", |(line, _)| line.of.setting.0.to_string())
         .column("schedule", |(line, _)| line.of.name())
         .column("spp", |(_, point)| point.spp.to_string())
-        .estimated("median seconds", Decimals(4), |(_, point)| point.seconds)
+        .estimated("seconds", Decimals(4), |(_, point)| point.seconds)
         .number("processes", Decimals(0), |(_, point)| count(&point.seconds))
         .estimated("RMSE, linear", Decimals(5), |(_, point)| point.rmse)
         .number("seeds", Decimals(0), |(_, point)| count(&point.rmse))
@@ -253,6 +261,7 @@ fn points(lines: &[Line<'_>]) -> Block {
 
 #[cfg(test)]
 mod tests {
+    use crate::block::Block;
     use crate::figures::blocks;
     use crate::measure::Record;
     use crate::tests::{results, row, svg, table};
@@ -272,6 +281,16 @@ mod tests {
             rows.extend([serial, parallel, elsewhere]);
         }
         rows
+    }
+
+    #[test]
+    fn one_renderer_is_not_compared_with_itself() {
+        let alone = closed_form().into_iter().filter(|row| row.threads == 1 && row.scene == "cornell");
+        let blocks = blocks(&results(&["rmse-against-time"], "", alone.collect()).unwrap()).unwrap();
+        let findings: Vec<&str> = blocks.iter().filter_map(Block::as_finding).collect();
+        let [only] = &findings[..] else { panic!("{findings:?}") };
+        assert!(only.starts_with("cornell: an RMSE of ") && only.ends_with(", measured."), "{only}");
+        assert_eq!(only.matches(" s (").count(), 1, "{only}");
     }
 
     #[test]

@@ -67,7 +67,7 @@ fn plot(results: &Results, compared: &[(&str, Estimated, Estimated)]) -> DotPlot
     let rows = compared
         .iter()
         .map(|(scene, variance, time)| DotRow::new(*scene, vec![Some(variance.dot()), Some(time.dot())]));
-    let axis = Axis::log("by cosine (the report's way) / by facets, at equal samples").including([0.9, 1.1]);
+    let axis = Axis::log("by cosine / by facets, at equal samples").including([0.9, 1.1]);
     let errors = compared.iter().filter_map(|(scene, variance, _)| Some((*scene, Ratio::of(*variance)?)));
     let result = titles::largest_above_1(errors).map_or_else(
         || "The facets leave no smaller error than the cosine beyond the noise".to_string(),
@@ -132,7 +132,7 @@ fn sheet(results: &Results, pairs: &[Pair<'_>]) -> Result<Option<Block>> {
         let Some(image) = results.reference_image(Some(pair.scene))? else { return Ok(None) };
         cells.push(Some(Cell::of(&image, vec![pair.scene.to_string(), "reference".to_string()])?));
     }
-    let title = "Report B's material by roughness".to_string();
+    let title = "The material by roughness".to_string();
     let sheet = ContactSheet {
         title,
         subtitle: results.run.machine.line(),

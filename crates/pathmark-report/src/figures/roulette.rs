@@ -52,6 +52,12 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     chart.caption = "Efficiency: 1 / (variance of a sample x its seconds). Bars: 95 % interval over seeds.".to_string();
     chart.dodge = 6.0;
     let finding = match most.interval {
+        Some(interval) if interval.low <= 1.0 => format!(
+            "Of the rules that were tried, none is more efficient than {yardstick} beyond the noise. The highest efficiency is that of {}: {:.2} times {yardstick}, {}.",
+            best.name,
+            most.value,
+            with_level(&interval, 2)
+        ),
         Some(interval) => format!(
             "Of the rules that were tried, {} is the most efficient: {:.2} times {yardstick}, {}.",
             best.name,

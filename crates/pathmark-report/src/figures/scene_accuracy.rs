@@ -168,7 +168,7 @@ fn correlation(scenes: &[Accuracy], control: Option<&Control>) -> Option<Correla
 
 fn claim(found: &Correlation) -> Block {
     Block::finding(format!(
-        "Report A says that a scene without reflections is more accurate because its paths bounce less. Over {} different scenes the rank correlation of rays per sample and \
+        "Is a scene more accurate if its paths bounce less? Over {} different scenes the rank correlation of rays per sample and \
          relative error is {:.2} (p = {:.2}): {}.",
         found.scenes,
         found.rho,
@@ -195,10 +195,10 @@ fn controlled(scenes: &[Accuracy], control: &Control) -> Option<Block> {
         format!("{:.2} times ({:.2} to {:.2})", found.value, found.interval.low, found.interval.high)
     };
     let verdict = match (glass.interval.low > 1.0, mirror.interval.low > 1.0) {
-        (true, true) => "Reflections do cost accuracy in this box",
-        (false, false) => "Reflections as such cost this box no accuracy",
-        (true, false) => "Glass costs this box accuracy, mirrors do not",
-        (false, true) => "Mirrors cost this box accuracy, a mirror and a glass ball together do not",
+        (true, true) => "Reflections cost accuracy in this box",
+        (false, false) => "Beyond the noise, reflections cost this box no accuracy",
+        (true, false) => "Glass costs this box accuracy; beyond the noise, mirrors do not",
+        (false, true) => "Mirrors cost this box accuracy; beyond the noise, a mirror and a glass ball together do not",
     };
     let length = |scene: &Accuracy| format!("{:.2}", scene.rays);
     Some(Block::finding(format!(

@@ -11,9 +11,6 @@ use crate::words::{hollow, with_interval};
 /// A chart with more lines than this is unreadable, so strategies become named rows instead.
 const MOST_LINES: usize = 8;
 
-/// More areas than this leave each too little width.
-const MOST_AREAS: usize = 4;
-
 /// The mark of schedules that are not told apart from the fastest one.
 const OPEN: &str = "≈";
 
@@ -340,9 +337,8 @@ impl Speedups<'_> {
             names.push("a thread per job".to_string());
         }
         // Speedups of one number of threads are read without those of the others.
-        let side_by_side = (2..=MOST_AREAS).contains(&names.len());
-        let axis = Axis::linear(axis).including(Some(0.9).filter(|_| !side_by_side));
-        let mut plot = DotPlot { side_by_side, ..DotPlot::new(title, axis, rows).grouped(names) };
+        let mut plot = DotPlot::new(title, Axis::linear(axis), rows).in_areas(names);
+        plot.axis = plot.axis.including(Some(0.9).filter(|_| !plot.side_by_side));
         let rows = own.iter().flat_map(|(schedule, _)| self.serial.rows(schedule).iter().copied());
         plot.subtitle = self.results.workload_of(&rows.collect::<Vec<&Row>>());
         plot.caption = ratio_bars(own.iter().map(|(_, speedup)| *speedup));
@@ -448,8 +444,8 @@ impl Speedups<'_> {
         let rows = schedule.key.threads;
         let verdict = if speedup.interval.high < rows as f64 { "is refuted" } else { "is not refuted" };
         Some(Block::finding(format!(
-            "A thread for each of {rows} rows is {:.3} times as fast as serial, {}. Report A's claim that a thread per row divides the time by \
-             the number of rows {verdict} by this run.",
+            "A thread for each of {rows} rows is {:.3} times as fast as serial, {}. That a thread per row divides the time by the number of \
+             rows {verdict} by this run.",
             speedup.value,
             with_level(&speedup.interval, 3),
         )))

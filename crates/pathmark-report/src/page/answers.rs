@@ -114,9 +114,9 @@ pub(super) fn markup(sections: &[Section], styles: &mut Styles) -> Result<Markup
                 @for (answer, figure) in answers.iter().zip(&figures) {
                     article {
                         h2 { (answer.heading) " " span class={ "badge " (answer.trust.class()) } { (answer.trust.badge()) } }
-                        p { (prose(answer.text)) " " a href={ "#" (answer.section.name) } { "More" } }
+                        p { (prose(answer.text)) " " a href={ "#" (answer.section.anchor()) } { "More" } }
                         @if let Some(figure) = figure {
-                            a.thumbnail.disturbed[answer.trust == Trust::Disturbed] href={ "#" (answer.section.name) "-" (answer.stem) } aria-label={ "The figure of: " (answer.heading) } { (PreEscaped(figure)) }
+                            a.thumbnail.disturbed[answer.trust == Trust::Disturbed] href={ "#" (answer.section.anchor()) "-" (answer.stem) } aria-label={ "The figure of: " (answer.heading) } { (PreEscaped(figure)) }
                         }
                     }
                 }

@@ -115,7 +115,8 @@ fn plot(speedups: &[(&BenchRow, [f64; 3])], machine: String) -> DotPlot {
     let result = speedups.first().and_then(|(row, [value, low, high])| {
         let interval = Interval { low: *low, high: *high, level: LEVEL };
         let times = titles::told(Estimated::of(*value, Some(interval)))?;
-        Some(format!("{} on {} threads is {times} times as fast as serial", row.case, row.parameter))
+        let crew = row.parameter.parse().map_or_else(|_| row.parameter.clone(), |threads| counted(threads, "thread"));
+        Some(format!("{} on {crew} is {times} times as fast as serial", row.case))
     });
     let mut plot = DotPlot::new(
         Title::new("Speedup by cargo bench").with_result(result),

@@ -46,6 +46,15 @@ impl Block {
         Ok(Self::Picture { stem, title: sheet.title.clone(), png, comparison: sheet.comparison, images })
     }
 
+    /// The file of a figure or picture in the folder, and its title; `None` for other blocks.
+    pub(crate) fn picture_file(&self) -> Option<(String, String)> {
+        match self {
+            Self::Figure { stem, figure } => Some((format!("{stem}.svg"), figure.drawing().title)),
+            Self::Picture { stem, title, .. } => Some((format!("{stem}.png"), title.clone())),
+            _ => None,
+        }
+    }
+
     /// Writes the figure, picture or table (as CSV) into the folder.
     pub fn save(&self, folder: &Path) -> Result<()> {
         std::fs::create_dir_all(folder).map_err(|e| Error::system("creating", folder, e))?;

@@ -4,6 +4,7 @@ use crate::block::Block;
 use crate::error::Result;
 use crate::experiment::{Chapter, DOCTOR, Examination};
 use crate::page::Section;
+use crate::words::capital;
 use std::path::Path;
 
 const QUESTION: &str = "What disturbs measurements on this machine, and which differences can be seen on it?";
@@ -20,7 +21,7 @@ pub(crate) fn section(out: &Path) -> Result<Option<Section>> {
     let Examination { facts, noise, .. } = Examination::read(&path)?;
     let noise = noise.map_or_else(
         || Block::notice("The pairs of equal runs gave no interval."),
-        |noise| Block::finding(format!("{}.", noise.finding())),
+        |noise| Block::finding(capital(&format!("{}.", noise.finding()))),
     );
     let table = Block::table("condition", "The machine before the experiments", &facts)
         .column("fact", |fact| fact.name.clone())
@@ -59,7 +60,7 @@ mod tests {
         };
         let blocks = write(&noise);
         let finding = blocks[0].as_finding().unwrap();
-        assert!(finding.starts_with("differences below 1.30 % cannot be seen in 10 minutes here"), "{finding}");
+        assert!(finding.starts_with("Differences below 1.30 % cannot be seen in 10 minutes here"), "{finding}");
         assert!(matches!(&blocks[1], Block::Table { table, .. } if table.len() == 2));
         assert!(write("null")[0].as_finding().is_none());
         std::fs::write(folder.path().join(DOCTOR), "[]").unwrap();

@@ -45,7 +45,7 @@ fn answer(rows: &[PriceRow]) -> Option<Block> {
     let (low, high) = share.bar()?;
     let short = |value: f64| number::short(value, 2);
     let text = format!(
-        "{} guards keep hard inputs right. The dearest, {}, costs {:.1} % ({low:.1} to {high:.1}) of a render; without it, the {} is {} instead of {}.",
+        "{} guards keep hard inputs right. The one that costs most, {}, takes {:.1} % ({low:.1} to {high:.1}) of a render; without it, the {} is {} instead of {}.",
         priced().count(),
         row.guard,
         share.value,
@@ -56,14 +56,14 @@ fn answer(rows: &[PriceRow]) -> Option<Block> {
     Some(Block::Answer { text, stem: "guards", is_told: high - low <= 4.0 })
 }
 
-/// The result in a line: the dearest guard, if its price is beyond the noise.
+/// The result in a line: the guard that costs most, if its price is beyond the noise.
 fn result(rows: &[PriceRow]) -> Option<String> {
     let priced = rows.iter().filter_map(|row| Some((row, percent(row)?)));
     let certain = priced.filter(|(_, share)| share.interval.is_some_and(|interval| interval.low > 0.0));
     let Some((row, share)) = certain.max_by(|a, b| a.1.value.total_cmp(&b.1.value)) else {
         return Some("No guard costs more than the noise".to_string());
     };
-    Some(format!("The dearest guard, {}, costs {} % of a render", row.guard, titles::told(share)?))
+    Some(format!("The guard that costs most, {}, takes {} % of a render", row.guard, titles::told(share)?))
 }
 
 fn plot(rows: &[PriceRow], machine: String) -> DotPlot {

@@ -1,7 +1,7 @@
 //! The list of sections for a folder with a page for each of them.
 
 use super::compact::Styles;
-use super::{Section, TITLE, about, banner, chapters, document, prose};
+use super::{Section, about, banner, chapters, document, heading, href, prose, title};
 use crate::prelude::counted;
 use maud::{Markup, html};
 
@@ -10,12 +10,12 @@ pub(crate) const INDEX: &str = "index.html";
 
 /// The list: of each section its result, with a link to its page.
 pub(crate) fn index(sections: &[Section]) -> String {
-    let chapters = chapters(sections);
+    let (chapters, title) = (chapters(sections), title(sections));
     let claims = sections.iter().filter(|section| section.chapter.is_none());
     let entry = |section: &Section| -> Markup {
         html! {
             li {
-                a href={ (section.name) ".html" } { (section.title) }
+                a href=(href(&format!("{}.html", section.name))) { (section.title) }
                 @if let Some(text) = section.headline() { ": " (prose(text)) }
                 @if section.is_disturbed() { " " span.badge.disturbed { "disturbed" } }
             }
@@ -24,16 +24,16 @@ pub(crate) fn index(sections: &[Section]) -> String {
     let nav =
         html! { p { (counted(sections.len(), "page")) } p { a href={ "../" (crate::PAGE) } { "All on one page" } } };
     let main = html! {
-        h1 { (TITLE) }
+        h1 { (title) }
         (about(sections))
         (banner(sections))
         @for (chapter, sections) in &chapters {
             section.in-short {
-                h2 { (chapter.title()) }
+                h2 { (heading(*chapter, &chapters)) }
                 ul { @for section in sections { (entry(section)) } }
             }
         }
         section.in-short { ul { @for section in claims { (entry(section)) } } }
     };
-    document(TITLE, &Styles::default(), &nav, &main)
+    document(title, &Styles::default(), &nav, &main)
 }

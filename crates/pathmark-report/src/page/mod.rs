@@ -1,5 +1,6 @@
 //! `report.html`: the whole report in one file, readable without a network.
 
+mod address;
 mod again;
 mod answers;
 pub(crate) mod benches;
@@ -21,6 +22,7 @@ use crate::prelude::joined;
 use crate::results::Results;
 use crate::shell;
 use crate::words::counted;
+pub(crate) use address::href;
 use again::Again;
 use block::Block;
 use compact::Styles;
@@ -63,8 +65,10 @@ const OPEN_ROWS: usize = 12;
 /// A part of the page: an experiment, the guards, the bursts, the benches or the claims.
 #[derive(Default)]
 pub(crate) struct Section {
-    /// Its anchor, the target of links.
+    /// Its name, from which its anchor is made.
     pub(crate) name: String,
+    /// The title of a page with it; `None` if it says nothing about the whole page.
+    pub(crate) page_title: Option<String>,
     pub(crate) title: String,
     pub(crate) question: String,
     pub(crate) analysis: String,
@@ -86,10 +90,18 @@ pub(crate) struct Section {
     pub(crate) run: Option<RunFile>,
     /// Its files of raw data, as paths from the page.
     pub(crate) files: Vec<String>,
+    /// The folder of its figures, as a path from the page, if the page only links to them.
+    pub(crate) linked_figures: Option<String>,
     pub(crate) blocks: Vec<Block>,
 }
 
 impl Section {
+    /// Its anchor, the target of links: its name without characters that an address would read.
+    fn anchor(&self) -> String {
+        let kept = |letter: char| if letter.is_alphanumeric() || "-_.".contains(letter) { letter } else { '-' };
+        self.name.chars().map(kept).collect()
+    }
+
     /// Whether half of its rows or more are in doubt.
     fn is_disturbed(&self) -> bool {
         self.doubts.is_any() && 2 * self.doubts.count() >= self.rows
@@ -138,7 +150,7 @@ fn report(sections: &[Section], above: &Markup) -> Result<String> {
     let answers = answers::markup(sections, &mut styles)?;
     let mut parts = Vec::new();
     for (chapter, sections) in &chapters {
-        parts.push(self::chapter(*chapter, sections, &mut styles)?);
+        parts.push(self::chapter((*chapter, heading(*chapter, &chapters)), sections, &mut styles)?);
     }
     for claims in claims {
         parts.push(section(claims, true, &mut styles)?);
@@ -186,8 +198,11 @@ fn chapters(sections: &[Section]) -> Vec<(Chapter, Vec<&Section>)> {
     all.filter(|(_, sections)| !sections.is_empty()).collect()
 }
 
-/// The title of a page: that of its experiment, if it is the only one.
+/// The title of a page: the one that a section gives it, or that of its experiment, if it is the only one.
 fn title(sections: &[Section]) -> &str {
+    if let Some(title) = sections.iter().find_map(|section| section.page_title.as_deref()) {
+        return title;
+    }
     let mut own = sections.iter().filter(|section| section.run.is_some());
     match (own.next(), own.next()) {
         (Some(only), None) => &only.title,
@@ -246,22 +261,28 @@ fn of_chapter(sections: &[Section], chapter: Chapter) -> Vec<&Section> {
     own
 }
 
+/// The heading of a chapter. Experiments that name none are no others where they are all.
+fn heading(chapter: Chapter, chapters: &[(Chapter, Vec<&Section>)]) -> &'static str {
+    if chapter == Chapter::Others && chapters.len() == 1 { "Experiments" } else { chapter.title() }
+}
+
 fn contents(sections: &[Section], chapters: &[(Chapter, Vec<&Section>)]) -> Markup {
     let link = |name: &str, title: &str| html! { a href={ "#" (name) } { (title) } };
+    let has_answers = answers::is_any(sections);
     html! {
         details open {
             summary { "Contents" }
             ul {
-                @if answers::is_any(sections) { li { (link(answers::ANCHOR, "The answers")) } }
-                @if sections.iter().any(|section| section.in_short.is_some()) { li { (link(IN_SHORT, IN_SHORT_TITLE)) } }
+                @if has_answers { li { (link(answers::ANCHOR, "The answers")) } }
+                @if !findings(sections, chapters).is_empty() { li { (link(IN_SHORT, in_short_title(has_answers))) } }
                 @for (chapter, sections) in chapters {
                     li {
-                        (link(chapter.anchor(), chapter.title()))
-                        ul { @for section in sections { li { (link(&section.name, &section.title)) } } }
+                        (link(chapter.anchor(), heading(*chapter, chapters)))
+                        ul { @for section in sections { li { (link(&section.anchor(), &section.title)) } } }
                     }
                 }
                 @for section in sections.iter().filter(|section| section.chapter.is_none()) {
-                    li { (link(&section.name, &section.title)) }
+                    li { (link(&section.anchor(), &section.title)) }
                 }
                 li { (link(SOURCES, SOURCES_TITLE)) }
             }
@@ -270,31 +291,38 @@ fn contents(sections: &[Section], chapters: &[(Chapter, Vec<&Section>)]) -> Mark
 }
 
 const IN_SHORT: &str = "in-short";
-const IN_SHORT_TITLE: &str = "More findings";
 const SOURCES: &str = "sources";
 const SOURCES_TITLE: &str = "Machine, method, raw data";
 
-/// The most important findings, each with a link to its section.
-fn in_short(sections: &[Section], chapters: &[(Chapter, Vec<&Section>)]) -> Markup {
+fn in_short_title(has_answers: bool) -> &'static str {
+    if has_answers { "More findings" } else { "In short" }
+}
+
+/// The most important findings that are no answers, with their sections.
+fn findings<'a>(sections: &'a [Section], chapters: &[(Chapter, Vec<&'a Section>)]) -> Vec<(&'a Section, &'a str)> {
     let claims = sections.iter().filter(|section| section.chapter.is_none());
     let ordered = chapters.iter().flat_map(|(_, sections)| sections.iter().copied()).chain(claims);
     let others = ordered.filter(|section| !answers::has(sections, section));
-    let found: Vec<(&Section, &str)> =
-        others.filter_map(|section| Some((section, section.in_short.as_deref()?))).collect();
+    others.filter_map(|section| Some((section, section.in_short.as_deref()?))).collect()
+}
+
+/// These findings, each with a link to its section.
+fn in_short(sections: &[Section], chapters: &[(Chapter, Vec<&Section>)]) -> Markup {
+    let found = findings(sections, chapters);
     html! {
         @if !found.is_empty() {
             section.in-short id=(IN_SHORT) {
-                h2 { (IN_SHORT_TITLE) }
-                ul { @for (section, text) in found { li { (prose(text)) " " a href={ "#" (section.name) } { (section.title) } } } }
+                h2 { (in_short_title(answers::is_any(sections))) }
+                ul { @for (section, text) in found { li { (prose(text)) " " a href={ "#" (section.anchor()) } { (section.title) } } } }
             }
         }
     }
 }
 
-fn chapter(chapter: Chapter, sections: &[&Section], styles: &mut Styles) -> Result<Markup> {
+fn chapter((chapter, heading): (Chapter, &str), sections: &[&Section], styles: &mut Styles) -> Result<Markup> {
     let parts = sections.iter().map(|own| section(own, false, styles)).collect::<Result<Vec<Markup>>>()?;
     Ok(html! {
-        h2 id=(chapter.anchor()) { (chapter.title()) }
+        h2 id=(chapter.anchor()) { (heading) }
         @for part in &parts { (part) }
     })
 }
@@ -318,7 +346,7 @@ fn sources(sections: &[Section]) -> Markup {
                         @for (section, run) in runs {
                             @let machine = &run.machine;
                             tr {
-                                td { a href={ "#" (section.name) } { (section.name) } }
+                                td { a href={ "#" (section.anchor()) } { (section.name) } }
                                 td { (section.rows) }
                                 td { (section.failed.len()) }
                                 td { (section.left_out.count()) }
@@ -343,12 +371,12 @@ fn section(section: &Section, is_chapter: bool, styles: &mut Styles) -> Result<M
     let parts = blocks.map(|(at, block)| part(section, block, first_table == Some(at), styles));
     let parts = parts.collect::<Result<Vec<Markup>>>()?;
     Ok(html! {
-        section id=(section.name) data-again=[section.again.as_ref().map(json)] {
+        section id=(section.anchor()) data-again=[section.again.as_ref().map(json)] {
             @if is_chapter { h2 { (section.title) } } @else { h3 { (section.title) } }
             p { strong { "Question. " } (prose(&section.question)) }
             @if !section.failed.is_empty() {
                 div.failed {
-                    p { strong { (section.failed.len()) " rows failed." } " They are left out of figures and tables." }
+                    p { strong { (counted(section.failed.len(), "row")) " failed." } " Failed rows are in no figure or table." }
                     ul { @for (error, cells) in failures(&section.failed).into_iter().take(10) { li { code { (cells[0]) } @if cells.len() > 1 { " and " (cells.len() - 1) " more" } ": " (error) } } }
                 }
             }
@@ -385,13 +413,18 @@ fn failures(failed: &[Record]) -> Vec<(&str, Vec<&str>)> {
 }
 
 fn part(section: &Section, block: &Block, is_first_table: bool, styles: &mut Styles) -> Result<Markup> {
+    if let Some(folder) = &section.linked_figures
+        && let Some((file, title)) = block.picture_file()
+    {
+        return Ok(html! { p.files { "Figure: " a href=(href(&format!("{folder}/{file}"))) { (title) } } });
+    }
     Ok(match block {
         Block::Answer { .. } => Markup::default(),
         Block::Finding(text) => html! { p.finding { (prose(text)) } },
         Block::Notice(text) => html! { p.notice { (prose(text)) } },
         Block::Figure { stem, figure } => figure_markup(section, stem, figure.as_ref(), styles)?,
         Block::Picture { stem, title, png, comparison, images } => html! {
-            figure.sheet id={ (section.name) "-" (stem) } {
+            figure.sheet id={ (section.anchor()) "-" (stem) } {
                 img alt=(title) src=(photo::source(png)?);
                 script.images type="application/json" { (PreEscaped(in_script(&json(&(comparison, images))))) }
                 figcaption { (number(section, stem)) }
@@ -412,7 +445,7 @@ fn figure_markup(section: &Section, stem: &str, figure: &dyn Figure, styles: &mu
     let other = other.transpose()?;
     let is_disturbed = section.is_disturbed();
     Ok(html! {
-        figure class=[is_disturbed.then_some("disturbed")] id={ (section.name) "-" (stem) } {
+        figure class=[is_disturbed.then_some("disturbed")] id={ (section.anchor()) "-" (stem) } {
             (PreEscaped(svg))
             @if let Some((name, svg)) = other { div.other hidden data-name=(name) { (PreEscaped(svg)) } }
             @if let Some(data) = figure.data() { script.jobs type="application/json" { (PreEscaped(in_script(&data))) } }
@@ -426,14 +459,14 @@ fn figure_markup(section: &Section, stem: &str, figure: &dyn Figure, styles: &mu
 
 /// The number of a figure, which the style sheet counts, a link to it, and its origin.
 fn number(section: &Section, stem: &str) -> Markup {
-    html! { a href={ "#" (section.name) "-" (stem) } {} (origin(section)) }
+    html! { a href={ "#" (section.anchor()) "-" (stem) } {} (origin(section)) }
 }
 
 /// The rows of a figure, and the link to the commands that draw it or measure it again.
 fn origin(section: &Section) -> Markup {
     html! {
         @if let Some(rows) = section.files.first() {
-            span.origin { " " a href=(rows) { "Rows" } ", " a href={ "#" (section.name) "-" (AGAIN) } { "commands" } }
+            span.origin { " " a href=(href(rows)) { "Rows" } ", " a href={ "#" (section.anchor()) "-" (AGAIN) } { "commands" } }
         }
     }
 }
@@ -548,9 +581,9 @@ fn provenance(section: &Section, run: &RunFile) -> Markup {
     html! {
         @if !section.files.is_empty() {
             p.files {
-            "Raw data: " @for (place, file) in section.files.iter().enumerate() { @if place > 0 { ", " } a href=(file) { (file) } } "."
+            "Raw data: " @for (place, file) in section.files.iter().enumerate() { @if place > 0 { ", " } a href=(href(file)) { (file) } } "."
             }
-            p.files id={ (section.name) "-" (AGAIN) } {
+            p.files id={ (section.anchor()) "-" (AGAIN) } {
                 "To draw the figures again, in the folder of this page: " code.redraw { (shell::command(["report", "."])) } "."
                 @if let Some(again) = &section.again {
                     " To measure again, in the folder where it was measured: " code.measure { (again.whole()) } "."

@@ -20,6 +20,8 @@ const ROW: f64 = 25.0;
 const GROUP: f64 = 11.0;
 /// Space between two areas.
 const BETWEEN: f64 = 34.0;
+/// More areas than this leave each too little width.
+const MOST_AREAS: usize = 4;
 /// Width of a guide's line.
 const GUIDE: f64 = 1.5;
 
@@ -86,6 +88,13 @@ impl DotPlot {
     pub fn grouped(mut self, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
         self.groups = names.into_iter().map(Into::into).collect();
         self
+    }
+
+    /// The same plot with a group for each name, and with an area for each if they are few.
+    #[must_use]
+    pub fn in_areas(self, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        let grouped = self.grouped(names);
+        Self { side_by_side: (2..=MOST_AREAS).contains(&grouped.groups.len()), ..grouped }
     }
 
     /// The groups of each area.
