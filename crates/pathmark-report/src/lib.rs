@@ -36,6 +36,7 @@ pub use estimated::{Estimated, LEVEL};
 pub use figures::{FIGURES, FigureEntry, check_figures, figure_of_serial};
 pub use page::benches::{BenchRow, write_benches};
 pub use page::block::Block;
+pub use page::replication;
 pub use results::Results;
 pub use words::counted;
 
@@ -133,6 +134,7 @@ fn sections(lab: &Arc<Lab>, out: &Path) -> Result<Vec<Section>> {
     if !sections.is_empty() {
         sections.extend(doctor::section(out)?);
     }
+    sections.extend(replication::section(out)?);
     sections.extend(claims::section(lab, out)?);
     if sections.is_empty() {
         let problem = "holds no experiment: no folder in it has a records.csv";
