@@ -3,7 +3,7 @@
 use pathmark::Lab;
 use pathmark::error::Result;
 use pathmark::experiment::{
-    Definition, Profile, RecordsFile, experiments, read_calibration, read_records, read_run_file,
+    Definition, Profile, RecordsFile, Replication, experiments, read_calibration, read_records, read_run_file,
 };
 use pathmark::film_file::read_film;
 use pathmark::image_io::{self, Image};
@@ -88,6 +88,13 @@ pub(crate) const TARGETS: &[Target] = &[
         ..TARGET
     },
     Target { name: "machine", file: "machine.toml", read: |path| ok(read_run_file(path)), ..TARGET },
+    Target {
+        name: "replication",
+        file: "replication.json",
+        read: |path| ok(Replication::read(path)),
+        words: JSON_WORDS,
+        ..TARGET
+    },
     Target {
         name: "calibration",
         file: "calibration.csv",

@@ -35,6 +35,7 @@ mod shared_seeds;
 mod snapshot;
 mod time_limits;
 mod until;
+mod verdicts;
 #[path = "../support/watchdog.rs"]
 mod watchdog;
 mod why;

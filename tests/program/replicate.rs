@@ -1,7 +1,8 @@
-//! `replicate`: do somebody's ratios and images come out here, too?
+//! `replicate`: do somebody's ratios, orders and images come out here, too?
 
 use crate::experiment::write_tiny;
 use crate::program::{finish, in_memory, pathmark};
+use pathmark::measure::available_threads;
 use serde_json::Value;
 use std::collections::HashMap;
 use std::fs;
@@ -55,8 +56,16 @@ fn judged(folder: &Path, more: &[&str], code: i32) -> Vec<Value> {
     serde_json::from_str(&finish(pathmark(folder, &all)).with_code(code).out).unwrap()
 }
 
+/// The verdicts on ratios and images; orders follow from the ratios.
 fn verdicts(told: &[Value]) -> Vec<&str> {
-    told.iter().map(|own| own["verdict"]["is"].as_str().unwrap()).collect()
+    let told = told.iter().filter(|own| own["kind"] != "order");
+    told.map(|own| own["verdict"]["is"].as_str().unwrap()).collect()
+}
+
+fn orders(told: &[Value]) -> Vec<(&str, f64, f64)> {
+    let of = |own: &Value, key: &str| own[key].as_f64().unwrap();
+    let told = told.iter().filter(|own| own["kind"] == "order");
+    told.map(|own| (own["verdict"]["is"].as_str().unwrap(), of(own, "theirs"), of(own, "here"))).collect()
 }
 
 /// Rows with invented times: the same ratio is reproduced, one that is bent by 20 % is not, few noisy rows cannot tell; another
@@ -69,9 +78,9 @@ fn ratios_and_images_are_judged_and_seconds_are_not() {
     finish(pathmark(folder.path(), &["replicate", "theirs", "--out", "here", "--plan"])).with_code(0);
     assert!(!folder.path().join("here").exists());
     // Both ratios are of real times of some microseconds, so the first run may have any verdict.
-    let first = pathmark(folder.path(), &["replicate", "theirs", "--out", "here"]);
+    let first = pathmark(folder.path(), &["replicate", "theirs", "--out", "here", "--markdown"]);
     let out = finish(first);
-    assert!(out.out.contains("# Replication"), "{} {}", out.out, out.err);
+    assert!(out.out.contains("# Replication of theirs"), "{} {}", out.out, out.err);
     let (theirs, here) = ("theirs/tiny/records.csv", "here/tiny/records.csv");
     let [theirs, here] = [theirs, here].map(|file| folder.path().join(file));
     let even = |index: usize| 1.0 + 0.001 * (index % 3) as f64;
@@ -81,6 +90,13 @@ fn ratios_and_images_are_judged_and_seconds_are_not() {
     let told = judged(folder.path(), &[], 0);
     assert_eq!(verdicts(&told), ["reproduced", "reproduced"], "{told:?}");
     assert!((told[0]["theirs"].as_f64().unwrap() - 1.5).abs() < 0.01, "{told:?}");
+    assert_eq!(orders(&told), [("reproduced", 1.0, 1.0)], "{told:?}");
+    let page = fs::read_to_string(folder.path().join("here/report.html")).unwrap();
+    assert!(page.contains("Replication of theirs") && page.contains("The machines side by side"), "{page}");
+    bent(&here, "static-blocks", 0.5, even);
+    let told = judged(folder.path(), &[], 1);
+    assert_eq!(verdicts(&told), ["not-reproduced", "reproduced"], "{told:?}");
+    assert_eq!(orders(&told), [("not-reproduced", 1.0, 0.0)], "{told:?}");
     bent(&here, "static-blocks", 1.2 * 1.5, even);
     assert_eq!(verdicts(&judged(folder.path(), &[], 1)), ["not-reproduced", "reproduced"]);
     assert_eq!(verdicts(&judged(folder.path(), &["--margin", "30%"], 0)), ["reproduced", "reproduced"]);
@@ -88,7 +104,7 @@ fn ratios_and_images_are_judged_and_seconds_are_not() {
     let told = judged(folder.path(), &[], 0);
     assert_eq!(verdicts(&told), ["cannot-tell", "reproduced"], "{told:?}");
     let text = fs::read_to_string(folder.path().join("here/REPLICATION.md")).unwrap();
-    assert!(text.contains("cannot tell: ") && text.contains("more repetition"), "{text}");
+    assert!(text.contains("| cannot tell | ") && text.contains("more repetition"), "{text}");
     let rows = fs::read_to_string(&theirs).unwrap();
     let mut reader = csv::Reader::from_path(&theirs).unwrap();
     let mut first: HashMap<String, String> = reader.deserialize().next().unwrap().unwrap();
@@ -96,6 +112,40 @@ fn ratios_and_images_are_judged_and_seconds_are_not() {
     fs::write(&theirs, rows.replace(&checksum, "sha256:0123456789abcdef")).unwrap();
     let told = finish(pathmark(folder.path(), &["replicate", "theirs", "--out", "here", "--resume"])).with_code(1);
     assert!(told.err.contains("1 statement not reproduced"), "{}", told.err);
+    assert!(
+        told.out.starts_with("not reproduced: tiny, image ") && told.out.contains("sha256:0123456789abcdef"),
+        "{}",
+        told.out
+    );
+}
+
+/// Their machine has more processors: cells that use them are left out here, and named. A quick replication has at most four
+/// repetitions of the others.
+#[test]
+fn cells_for_other_hardware_are_named() {
+    let folder = in_memory();
+    let (here, more) = (available_threads(), available_threads() + 1);
+    let text = PAIRED.replace("threads = [1]", &format!("threads = [1, {more}]"));
+    write_tiny(folder.path(), &text.replace("repetitions = 4", "repetitions = 5"));
+    finish(pathmark(folder.path(), &["run", "tiny.toml", "--out", "theirs"])).with_code(0);
+    let machine = folder.path().join("theirs/tiny/machine.toml");
+    let text = fs::read_to_string(&machine).unwrap();
+    let own = format!("\nprocessors = {here}\n");
+    assert!(text.contains(&own), "{text}");
+    fs::write(&machine, text.replace(&own, "\nprocessors = 1000\n")).unwrap();
+    // Real times of some microseconds may have any verdict.
+    let out = finish(pathmark(folder.path(), &["replicate", "theirs", "--quick", "--json"])).out;
+    let told: Vec<Value> = serde_json::from_str(&out).unwrap();
+    let why = format!("{more} processors instead of {here}");
+    let elsewhere: Vec<&Value> = told.iter().filter(|own| own["verdict"]["why"] == why.as_str()).collect();
+    assert!(elsewhere.iter().any(|own| own["kind"] == "ratio"), "{told:?}");
+    assert!(told.iter().any(|own| own["kind"] == "image" && own["verdict"]["is"] == "reproduced"), "{told:?}");
+    let rows = fs::File::open(folder.path().join("replication/tiny/records.csv")).unwrap();
+    for row in csv::Reader::from_reader(rows).deserialize::<HashMap<String, String>>().map(Result::unwrap) {
+        assert!(row["threads"] == "1" && row["repetition"].parse::<u32>().unwrap() < 4, "{row:?}");
+    }
+    let page = fs::read_to_string(folder.path().join("replication/report.html")).unwrap();
+    assert!(page.contains(&format!("Other hardware: {why} (")) && page.contains("<td>1000</td>"), "{page}");
 }
 
 #[test]

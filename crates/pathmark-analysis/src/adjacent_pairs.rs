@@ -10,7 +10,7 @@
 //! many processes a few may be disturbed for their whole life; from sixteen on, the eighth at either end does not count
 //! (`trimmed.rs`).
 
-use crate::agreement::LogRatio;
+use crate::equivalence::Measured;
 use crate::interval::{Estimate, Interval, is_level};
 use crate::mean::{Moments, t_quantile};
 use crate::quantile::median;
@@ -50,23 +50,20 @@ pub struct Spread {
 /// Returns the ratio from the pairs of each process; `None` below [`FEWEST_PROCESSES`], for a process without pairs, for
 /// ratios that are not positive and finite, or without any spread.
 pub fn paired_ratio(processes: &[Vec<f64>], level: f64) -> Option<PairedRatio> {
-    let logarithms = logarithms(processes)?;
-    if processes.len() < FEWEST_PROCESSES {
-        return None;
-    }
-    let Centre { value, standard_error, degrees_of_freedom } = centre_of(&logarithms)?;
-    let half_width = t_quantile(level, degrees_of_freedom)? * standard_error;
-    let interval = Interval::between(libm::exp(value - half_width), libm::exp(value + half_width), level)?;
-    let ratio = Estimate { value: libm::exp(value), interval };
+    let centre = log_ratio(processes)?;
+    let half_width = centre.half_width(level)?;
+    let [low, value, high] = [-half_width, 0.0, half_width].map(|distance| libm::exp(centre.value + distance));
+    let ratio = Estimate { value, interval: Interval::between(low, high, level)? };
     let pairs = processes.iter().map(Vec::len).sum();
-    Some(PairedRatio { ratio, pairs, processes: processes.len(), spread: spread_of(&logarithms, 1.0)? })
+    Some(PairedRatio { ratio, pairs, processes: processes.len(), spread: spread(processes)? })
 }
 
 /// The logarithm of the ratio with its error; `None` as for [`paired_ratio`].
-pub fn log_ratio(processes: &[Vec<f64>]) -> Option<LogRatio> {
+pub fn log_ratio(processes: &[Vec<f64>]) -> Option<Measured> {
     let logarithms = logarithms(processes).filter(|all| all.len() >= FEWEST_PROCESSES)?;
-    let Centre { value, standard_error, degrees_of_freedom } = centre_of(&logarithms)?;
-    Some(LogRatio { value, standard_error, degrees_of_freedom: degrees_of_freedom as f64, units: processes.len() })
+    let medians = logarithms.iter().map(|own| median(own)).collect::<Option<Vec<f64>>>()?;
+    let Centre { value, standard_error, degrees_of_freedom } = centre(&medians)?;
+    Some(Measured { value, standard_error, degrees_of_freedom: degrees_of_freedom as f64, units: processes.len() })
 }
 
 /// The pairs of each process, from ratios with the numbers of their processes.
@@ -81,16 +78,10 @@ pub fn by_process(ratios: impl IntoIterator<Item = (u32, f64)>) -> Vec<Vec<f64>>
 /// The probability, if the ratio were 1 or more, that the processes show one as small as this or smaller (Student's t).
 /// 1 where [`paired_ratio`] has no answer.
 pub fn p_of_less(processes: &[Vec<f64>]) -> f64 {
-    let centre = logarithms(processes).filter(|all| all.len() >= FEWEST_PROCESSES).and_then(|all| centre_of(&all));
-    let t = centre.and_then(|Centre { value, standard_error, degrees_of_freedom }| {
-        Some((value / standard_error, StudentsT::new(0.0, 1.0, degrees_of_freedom as f64).ok()?))
+    let t = log_ratio(processes).and_then(|Measured { value, standard_error, degrees_of_freedom, .. }| {
+        Some((value / standard_error, StudentsT::new(0.0, 1.0, degrees_of_freedom).ok()?))
     });
     t.map_or(1.0, |(t, law)| law.cdf(t))
-}
-
-/// The centre of the medians of processes.
-fn centre_of(logarithms: &[Vec<f64>]) -> Option<Centre> {
-    centre(&logarithms.iter().map(|own| median(own)).collect::<Option<Vec<f64>>>()?)
 }
 
 /// Returns the spread of ratios within and between processes; `None` below two processes.

@@ -8,11 +8,21 @@
 //! means and for variances between seeds (J. N. Arvesen, "Jackknifing U-statistics", Annals of Mathematical Statistics
 //! 40, 1969).
 
+use super::equivalence::Measured;
 use super::interval::{Estimate, Interval};
 use super::mean::t_interval;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Points (samples per pixel, mean squared error), ordered by samples per pixel.
 pub type Curve = Vec<(f64, f64)>;
+
+/// The curve of each seed, from squared errors by samples per pixel and seed. If a seed has no positive squared error at some
+/// number of samples, that number is left out for all seeds: leaving it out for that seed alone would bias the rest upwards.
+pub fn curves_of(seeds: &BTreeSet<u64>, mut errors: BTreeMap<u32, BTreeMap<u64, f64>>) -> BTreeMap<u64, Curve> {
+    errors.retain(|_, own| own.len() == seeds.len() && own.values().all(|mse| *mse > 0.0));
+    let of = |seed: &u64| errors.iter().filter_map(|(spp, own)| Some((f64::from(*spp), *own.get(seed)?))).collect();
+    seeds.iter().map(|seed| (*seed, of(seed))).collect()
+}
 
 /// The error curve of all seeds, and the curve without each one of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,9 +81,17 @@ impl SeedCurves {
     /// Estimates a value that `of` computes from a curve, with its interval; `None` if it does not exist for every
     /// curve, or does not vary.
     pub fn estimate(&self, level: f64, of: impl Fn(&Curve) -> Option<f64>) -> Option<Estimate> {
+        t_interval(&self.pseudovalues(of)?, level)
+    }
+
+    /// The same value with its error, for a comparison of two measurements.
+    pub(super) fn measured(&self, of: impl Fn(&Curve) -> Option<f64>) -> Option<Measured> {
+        Measured::of_mean(&self.pseudovalues(of)?)
+    }
+
+    fn pseudovalues(&self, of: impl Fn(&Curve) -> Option<f64>) -> Option<Vec<f64>> {
         let (n, whole) = (self.without.len() as f64, of(&self.whole)?);
-        let pseudo = self.without.iter().map(|curve| Some(n * whole - (n - 1.0) * of(curve)?));
-        t_interval(&pseudo.collect::<Option<Vec<f64>>>()?, level)
+        self.without.iter().map(|curve| Some(n * whole - (n - 1.0) * of(curve)?)).collect()
     }
 
     /// Like [`Self::estimate`] for a positive value, by way of its logarithm, which varies more evenly.
@@ -155,6 +173,17 @@ mod tests {
         for (left_out, kept) in [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]].iter().enumerate() {
             assert!((found.without[left_out][0].1 - variance(kept)).abs() < 1e-12);
         }
+    }
+
+    /// At four samples the second seed has a negative error, and at eight it has none: only one and two are left.
+    #[test]
+    fn a_number_of_samples_counts_for_all_seeds_or_for_none() {
+        let all: [(u32, &[(u64, f64)]); 4] =
+            [(1, &[(3, 1.0), (5, 2.0)]), (2, &[(3, 0.5), (5, 1.0)]), (4, &[(3, 0.2), (5, -0.1)]), (8, &[(3, 0.1)])];
+        let errors = all.map(|(spp, own)| (spp, own.iter().copied().collect()));
+        let found = curves_of(&BTreeSet::from([3, 5]), errors.into());
+        let curve = |factor: f64| vec![(1.0, factor), (2.0, 0.5 * factor)];
+        assert_eq!(found, BTreeMap::from([(3, curve(1.0)), (5, curve(2.0))]));
     }
 
     #[test]

@@ -5,13 +5,13 @@
 
 pub mod aa_test;
 pub mod adjacent_pairs;
-pub mod agreement;
 pub mod autocorrelation;
 pub mod balance;
 pub mod bootstrap;
 pub mod chi_square;
 pub mod confidence_sequence;
 pub mod crossed;
+pub mod equivalence;
 pub mod error_ratio;
 pub mod fit;
 pub mod interval;

@@ -6,6 +6,7 @@
 //! logarithm of a scattered error is on average below the logarithm of its expectation, by half its squared variation.
 //! The difference is larger where few samples meet a heavy tail, and it tilts every curve in the same direction.
 
+use super::equivalence::Measured;
 use super::fit::{Sums, logarithms};
 use super::interval::Estimate;
 use super::jackknife::{Curve, SeedCurves};
@@ -42,6 +43,11 @@ pub fn power_law(curves: &SeedCurves, level: f64) -> Option<PowerLaw> {
     };
     let exponent = curves.estimate(level, |curve| Some(Fit::of(curve)?.exponent))?;
     Some(PowerLaw { exponent, log_scale: whole.log_scale, bend, seeds: curves.seeds() })
+}
+
+/// The exponent alone, with its error, for a comparison of two measurements.
+pub fn exponent(curves: &SeedCurves) -> Option<Measured> {
+    curves.measured(|curve| Some(Fit::of(curve)?.exponent))
 }
 
 /// A line through (ln x, ln MSE) in terms of RMSE, and the bend of a parabola through the same points.
@@ -123,6 +129,9 @@ mod tests {
         // Two curves of ln MSE with slopes -1 and -0.6 about a common centre: their mean squared error is a cosh, which bends upwards.
         let tilted = |slope: f64| SPP.map(|spp| (spp, libm::pow(spp / 16.0, slope))).to_vec();
         let law = of_curves(&[tilted(-1.0), tilted(-0.6)], 0.95).unwrap();
+        let alone = exponent(&SeedCurves::of_errors(&[tilted(-1.0), tilted(-0.6)]).unwrap()).unwrap();
+        assert!((alone.value - law.exponent.value).abs() < 1e-12 && alone.units == 2);
+        assert!((alone.half_width(0.95).unwrap() + alone.value - law.exponent.interval.high).abs() < 1e-9);
         assert!((law.exponent.value + 0.4).abs() < 1e-9, "symmetric about -0.8 / 2: {law:?}");
         assert!(law.bend.unwrap().value > 0.0 && law.seeds == 2);
     }

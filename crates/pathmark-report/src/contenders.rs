@@ -3,7 +3,7 @@
 
 use super::naming::{Part, needed};
 use super::schedule::{crew, strategy};
-use crate::analysis::jackknife::{Curve, SeedCurves};
+use crate::analysis::jackknife::{Curve, SeedCurves, curves_of};
 use crate::analysis::mean::geometric_interval;
 use crate::analysis::mse::over_seeds;
 use crate::analysis::price::{Law, Renderer};
@@ -113,9 +113,8 @@ fn renderer(seeds: &[(Curve, f64)], law: Law) -> Option<Renderer> {
     })
 }
 
-/// The curve (spp, squared error) of each seed, and its seconds for a sample in every pixel, from its longest render.
-/// If a seed has no positive squared error at some spp, that spp is left out for all seeds: leaving it out for that
-/// seed alone would bias the rest upwards.
+/// The curve (spp, squared error) of each seed (see [`curves_of`]), and its seconds for a sample in every pixel, from its
+/// longest render.
 pub(super) fn curves_of_seeds(rows: &[&Row]) -> Vec<(Curve, f64)> {
     curves_by(rows, |row| row.mse)
 }
@@ -127,15 +126,11 @@ pub(super) fn curves_by(rows: &[&Row], error: fn(&Row) -> Option<f64>) -> Vec<(C
         seeds.entry(row.seed).or_default().entry(row.spp).or_insert(row);
     }
     let errors = group(rows.iter().copied(), |row| row.spp).into_iter().map(|(spp, rows)| (spp, by_seed(&rows, error)));
-    let has_all = |errors: &BTreeMap<u64, f64>| errors.len() == seeds.len() && errors.values().all(|mse| *mse > 0.0);
-    let whole: Vec<(u32, BTreeMap<u64, f64>)> = errors.filter(|(_, errors)| has_all(errors)).collect();
-    let of_seed = |(seed, rows): (&u64, &BTreeMap<u32, &Row>)| {
-        let curve: Curve =
-            whole.iter().filter_map(|(spp, errors)| Some((f64::from(*spp), *errors.get(seed)?))).collect();
-        let longest = rows.iter().rev().find_map(|(spp, row)| Some(row.rendering_s()? / f64::from(*spp)))?;
-        Some((curve, longest))
+    let curves = curves_of(&seeds.keys().copied().collect(), errors.collect());
+    let longest = |rows: &BTreeMap<u32, &Row>| {
+        rows.iter().rev().find_map(|(spp, row)| Some(row.rendering_s()? / f64::from(*spp)))
     };
-    seeds.iter().filter_map(of_seed).collect()
+    curves.into_iter().filter_map(|(seed, curve)| Some((curve, longest(seeds.get(&seed)?)?))).collect()
 }
 
 pub(super) fn one_per_seed(rows: &[&Row], value: impl Fn(&Row) -> Option<f64>) -> Vec<f64> {

@@ -36,6 +36,7 @@ pub use estimated::{Estimated, LEVEL};
 pub use figures::{FIGURES, FigureEntry, check_figures, figure_of_serial};
 pub use page::benches::{BenchRow, write_benches};
 pub use page::block::Block;
+pub use page::replication;
 pub use results::Results;
 pub use words::counted;
 
@@ -142,6 +143,7 @@ fn sections(lab: &Arc<Lab>, out: &Path) -> Result<Vec<Section>> {
     if !sections.is_empty() {
         sections.extend(doctor::section(out)?);
     }
+    sections.extend(replication::section(out)?);
     // The rows of students answer no claim of the reports.
     if class.is_empty() {
         sections.extend(claims::section(lab, out)?);

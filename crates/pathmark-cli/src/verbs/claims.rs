@@ -2,6 +2,7 @@
 
 use super::plan_of_claims::plan;
 use super::prelude::*;
+use crate::console::markdown;
 use crate::report::claims::{self, Agreement, Answer, Listing, Report, judge};
 
 /// `pathmark claims out --report A`
@@ -41,7 +42,7 @@ struct Form {
     /// Print an array of objects
     #[arg(long)]
     json: bool,
-    /// Print the text that `--out` writes
+    /// Print the text that `--out` writes; with `--compare` a table
     #[arg(long)]
     markdown: bool,
 }
@@ -138,6 +139,9 @@ fn compare(arguments: &Arguments, earlier: &Path, lab: &Arc<Lab>) -> Result<()> 
     let found = Agreement::of(lab, &arguments.folders, earlier)?;
     if arguments.form.json {
         print_json(&found)?;
+    } else if arguments.form.markdown {
+        let table = markdown::table(["compared", "in both", "agree", "missing here"], found.table());
+        print(&format!("{table}\n\n{}", found.in_words().replace('\n', "\n\n")))?;
     } else {
         print(&found.in_words())?;
     }

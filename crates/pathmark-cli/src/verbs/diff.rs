@@ -30,8 +30,8 @@ pub(crate) struct Arguments {
     /// Print the comparison as one JSON object
     #[arg(long)]
     json: bool,
-    /// Print the comparison of times as tables in Markdown
-    #[arg(long, conflicts_with_all = ["json", "counts"])]
+    /// Print the comparison as tables in Markdown
+    #[arg(long, conflicts_with = "json")]
     markdown: bool,
 }
 
@@ -100,11 +100,8 @@ fn counts(arguments: &Arguments, limit: f64, console: &Console) -> Result<()> {
             json!({ "compared": compared, "changed": changed, "missing": lost.missing, "failed": lost.failed })
         }))?;
     } else {
-        let line = |count: &CountDiff| {
-            let CountDiff { cell, column, old, new } = count;
-            format!("{:>8.4} {column:<16} {old:>12} {new:>12}  {}", count.ratio(), printable(cell))
-        };
-        let lines = by_experiment(&found, |diffs| diffs.changed.iter().map(line).collect());
+        let shown = if arguments.markdown { counts_in_markdown } else { counts_in_lines };
+        let lines = by_experiment(&found, |diffs| shown(&diffs.changed));
         let compared = found.experiments.iter().map(|(_, diffs)| diffs.compared).sum();
         let end = format!("{} of {} changed", all().count(), counted(compared, "count"));
         print(&lines.into_iter().chain([end]).collect::<Vec<_>>().join("\n"))?;
@@ -115,6 +112,24 @@ fn counts(arguments: &Arguments, limit: f64, console: &Console) -> Result<()> {
         problems.push(format!("{} grew by more than {} %", counted(above, "count"), 100.0 * limit));
     }
     failed(&problems)
+}
+
+fn counts_in_lines(changed: &[CountDiff]) -> Vec<String> {
+    let line =
+        |[ratio, column, old, new, cell]: [String; 5]| format!("{ratio:>8} {column:<16} {old:>12} {new:>12}  {cell}");
+    changed.iter().map(count_cells).map(line).collect()
+}
+
+fn counts_in_markdown(changed: &[CountDiff]) -> Vec<String> {
+    let table = markdown::table(["new/old", "count", "old", "new", "cell"], changed.iter().map(count_cells));
+    vec![format!("\n{table}\n")]
+}
+
+/// Ratio, column, both counts and the cell of a count that changed.
+fn count_cells(count: &CountDiff) -> [String; 5] {
+    let CountDiff { cell, column, old, new } = count;
+    let cell = printable(cell).into_owned();
+    [format!("{:.4}", count.ratio()), (*column).to_string(), old.to_string(), new.to_string(), cell]
 }
 
 fn failed(problems: &[String]) -> Result<()> {

@@ -75,7 +75,7 @@ pub(super) enum Verb {
     Bursts(bursts::Arguments),
     /// Judge the claims of the four reports, or of a ledger of your own, by the results in a folder.
     Claims(claims::Arguments),
-    /// Measure somebody's rows again on this machine: which of their ratios and images come out here, too?
+    /// Measure somebody's rows again on this machine: which of their ratios, orders and images come out here, too?
     Replicate(replicate::Arguments),
     /// Write a commented starter file for an experiment, a scene or a ledger of claims.
     New(new::Arguments),

@@ -10,7 +10,8 @@ use crate::check::{self, Case, Effort};
 use crate::command_line;
 use crate::console::output::lock_folder;
 use crate::experiment::{
-    DOCTOR, Definition, Examination, Options, Plan, Power, Prices, Profile, RecordsFile, Summary, Sweep, Timeout,
+    DOCTOR, Definition, Examination, Options, Plan, Power, Prices, Profile, REPLICATION, RecordsFile, Replication,
+    Summary, Sweep, Timeout,
 };
 use crate::guard_prices::FOLDER;
 use crate::lock::Sharing;
@@ -167,10 +168,12 @@ fn put_aside(out: &Path, lab: &Lab, console: &Console) -> Result<()> {
     // Verdicts are of the rows beside them.
     let verdicts = Some(claims::MARKDOWN).filter(|name| claims::is_markdown(&out.join(name)));
     let examination = Some(DOCTOR).filter(|name| Examination::read(&out.join(name)).is_ok());
+    let replication = Some(REPLICATION).filter(|name| Replication::read(&out.join(name)).is_ok());
     let others = [FOLDER, report::bursts::FOLDER, cases_file::FOLDER, claims::FOLDER]
         .into_iter()
         .chain(verdicts)
-        .chain(examination);
+        .chain(examination)
+        .chain(replication);
     for name in names.into_iter().chain(others) {
         let folder = out.join(name);
         if folder.exists() {

@@ -53,6 +53,7 @@ const TAKEN: &[&str] = &[
     "index",
     "pages",
     "references",
+    "replication",
     "report.html",
 ];
 

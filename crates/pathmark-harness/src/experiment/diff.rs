@@ -203,10 +203,11 @@ pub fn diff(old: &Path, new: &Path, limit: f64, across: Across) -> Result<Compar
     Ok(Compared { experiments: diffs.collect(), alone: compared.alone })
 }
 
-type Cells = BTreeMap<String, Times>;
+/// The times of each cell.
+pub(super) type Cells = BTreeMap<String, Times>;
 
 /// Rows that failed have no time.
-fn times(rows: &[Record]) -> Cells {
+pub(super) fn times(rows: &[Record]) -> Cells {
     let mut times = Cells::new();
     for row in rows.iter().filter(|row| row.error.is_empty()) {
         if let Some(seconds) = row.makespan_s {

@@ -15,6 +15,7 @@ mod drift;
 mod external;
 mod formula;
 mod grading;
+mod image_bits;
 mod instructions;
 mod keys;
 mod matrix;
@@ -33,12 +34,15 @@ mod ranking;
 mod records_file;
 mod reference;
 mod replication;
+#[cfg(test)]
+mod replication_tests;
 mod run_file;
 mod running;
 #[cfg(test)]
 mod setting_tests;
 mod shuffle;
 mod sides;
+mod statements;
 mod stopping_rule;
 mod sweep;
 mod sweep_shard;
@@ -57,6 +61,7 @@ pub use diff::{Across, CellDiff, Change, Diff, diff, parse_share};
 pub use doctor::{DOCTOR, Examination, Noise};
 pub use external::{EXTERNAL, External};
 pub use grading::{BrokenPromise, Candidate, Grade, Rows, Trial, grades, own_checksum};
+pub use image_bits::{ImageBits, SameBits};
 pub use keys::keys;
 pub use matrix::LARGEST_REPETITIONS;
 pub use merge_sweeps::{MergedSweep, merge_sweeps};
@@ -72,9 +77,10 @@ pub use reference::{
     HalfFile, Reference, ReferenceError, check_until, reference_seed, refine_reference, render_reference,
     wanted_references,
 };
-pub use replication::{JOINT_LEVEL, Reproduction, Statement, Statements, definition_of, judge_together};
+pub use replication::{MachineFact, REPLICATION, Replication, Statements, Theirs};
 pub use run_file::{MACHINE, RunFile, read_run_file};
 pub use sides::{Compared, FailedCell, Lost};
+pub use statements::{JOINT_LEVEL, Kind, Reproduction, Statement};
 pub use stopping_rule::{Goal, MOST_REPETITIONS, StoppingRule};
 pub use sweep::{Options, Summary, Sweep};
 pub use sweep_shard::SweepShard;

@@ -79,24 +79,11 @@ pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Rank
     let rows: Vec<&Record> =
         rows.iter().filter(|row| wanted.as_ref().is_none_or(|wanted| wanted.contains(&row.cell))).collect();
     let shown_only = if run.uncapped { BTreeSet::new() } else { shown_only(lab, folder, &run.profile) };
-    let mut images: BTreeMap<ImageKey, Schedules> = BTreeMap::new();
-    let (mut timed, mut failed) = (BTreeSet::new(), BTreeSet::new());
-    for row in &rows {
-        let Some(seconds) = row.makespan_s.filter(|_| row.error.is_empty()) else {
-            failed.insert(row.cell.as_str());
-            continue;
-        };
-        timed.insert(row.cell.as_str());
-        let image = row.image_key();
-        let schedule = row.cell.strip_prefix(&format!("{image}/")).unwrap_or(&row.cell).to_string();
-        let role = || Timed {
-            is_serial: row.strategy == SERIAL && row.ranks.is_none(),
-            is_shown_only: shown_only.contains(&row.cell),
-            ..Timed::default()
-        };
-        let own = images.entry(image).or_default().entry(schedule).or_insert_with(role);
-        own.times.insert(turn(row), seconds);
-    }
+    let (with_time, without): (Vec<&Record>, Vec<&Record>) =
+        rows.iter().copied().partition(|row| seconds(row).is_some());
+    let timed: BTreeSet<&str> = with_time.iter().map(|row| row.cell.as_str()).collect();
+    let failed: BTreeSet<&str> = without.iter().map(|row| row.cell.as_str()).collect();
+    let mut images = schedules_of(with_time, &shown_only);
     images.retain(|_, schedules| schedules.len() > 1);
     if images.is_empty() {
         let problem = "contains no image with two schedules, so there is nothing to rank";
@@ -110,8 +97,8 @@ pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Rank
     let miss = MISS / sizes().map(tests).sum::<f64>().max(1.0);
     let comparisons = sizes().map(|size| size.saturating_sub(1)).sum::<usize>().max(1);
     let level = level_of(comparisons);
-    let stopping = if run.until.is_some() { Stopping::Sequential } else { Stopping::Fixed };
-    let least = sizes().filter(|size| *size > 1).map(|size| least(size, miss * tests(size), stopping));
+    let stopping = run.stopping();
+    let least = sizes().filter(|size| *size > 1).map(|size| least_repetitions(size, miss * tests(size), stopping));
     let of_part = |image: &ImageKey, part: &Schedules, number: [usize; 2]| ImageRanking {
         image: image.to_string(),
         part: number,
@@ -130,6 +117,45 @@ pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Rank
     })
 }
 
+/// The seconds of a row that did not fail.
+fn seconds(row: &Record) -> Option<f64> {
+    row.makespan_s.filter(|_| row.error.is_empty())
+}
+
+/// The schedules of each image with their times. Those of the cells in `shown_only` are not compared.
+pub(super) fn schedules_of<'a>(
+    rows: impl IntoIterator<Item = &'a Record>,
+    shown_only: &BTreeSet<String>,
+) -> BTreeMap<ImageKey, Schedules> {
+    let mut images: BTreeMap<ImageKey, Schedules> = BTreeMap::new();
+    for (row, seconds) in rows.into_iter().filter_map(|row| Some((row, seconds(row)?))) {
+        let image = row.image_key();
+        let schedule = row.cell.strip_prefix(&format!("{image}/")).unwrap_or(&row.cell).to_string();
+        let role = || Timed {
+            is_serial: row.strategy == SERIAL && row.ranks.is_none(),
+            is_shown_only: shown_only.contains(&row.cell),
+            ..Timed::default()
+        };
+        let own = images.entry(image).or_default().entry(schedule).or_insert_with(role);
+        own.times.insert(turn(row), seconds);
+    }
+    images
+}
+
+/// The orders (faster, slower) of an image's schedules that are told apart, each within a part that was measured together.
+/// `miss` bounds the probability that any of them is wrong.
+pub(super) fn told_orders(schedules: &Schedules, miss: f64, stopping: Stopping) -> BTreeSet<(String, String)> {
+    let parts = parts(schedules);
+    let mut told = BTreeSet::new();
+    for part in &parts {
+        let (names, times): (Vec<&String>, Vec<Times>) =
+            part.iter().filter(|(_, own)| !own.is_shown_only).map(|(name, own)| (name, own.times.clone())).unzip();
+        let of_part = orders(&times, miss / parts.len() as f64, stopping).into_iter();
+        told.extend(of_part.map(|(faster, slower)| (names[faster].clone(), names[slower].clone())));
+    }
+    told
+}
+
 fn compared(schedules: &Schedules) -> usize {
     schedules.values().filter(|own| !own.is_shown_only).count()
 }
@@ -137,8 +163,13 @@ fn compared(schedules: &Schedules) -> usize {
 /// The keys of rows whose matrix has fewer repetitions than its experiment; empty if no readable definition lies beside
 /// the rows.
 fn shown_only(lab: &Arc<Lab>, folder: &Path, profile: &str) -> BTreeSet<String> {
-    let capped = cells(lab, folder, profile).unwrap_or_default().into_iter().filter(|cell| cell.at_most.is_some());
-    capped.flat_map(|cell| cell.points).map(|point| point.id).collect()
+    capped(&cells(lab, folder, profile).unwrap_or_default())
+}
+
+/// The keys of the rows of cells whose matrix has fewer repetitions than the experiment.
+pub(super) fn capped(cells: &[Cell]) -> BTreeSet<String> {
+    let capped = cells.iter().filter(|cell| cell.at_most.is_some());
+    capped.flat_map(|cell| &cell.points).map(|point| point.id.clone()).collect()
 }
 
 fn cells(lab: &Arc<Lab>, folder: &Path, profile: &str) -> Result<Vec<Cell>> {
@@ -188,7 +219,8 @@ fn sequence_level(schedules: usize, miss: f64) -> f64 {
     1.0 - 2.0 * miss / (schedules * schedules.saturating_sub(1)).max(1) as f64
 }
 
-fn least(schedules: usize, miss: f64, stopping: Stopping) -> u32 {
+/// The fewest repetitions that can tell any two of so many schedules apart.
+pub(super) fn least_repetitions(schedules: usize, miss: f64, stopping: Stopping) -> u32 {
     if stopping == Stopping::Fixed {
         return least_blocks(schedules, miss);
     }

@@ -1,175 +1,302 @@
-//! Replication: whether the ratios and the images of somebody's rows come out here, too. Seconds are never compared.
+//! Replication: whether the statements of somebody's rows come out here, too.
 
-use super::comparisons::Comparisons;
+use super::comparisons::{Comparison, Comparisons};
+use super::diff::{Cells, times};
+use super::image_bits::{ImageBits, SameBits};
+use super::ranking::{MISS, capped, schedules_of, told_orders};
 use super::records_file::read_records;
-use super::{Cell, Definition, Profile, packed_rows};
-use crate::analysis::adjacent_pairs::by_process;
-use crate::analysis::agreement::{Agreement, LogRatio, agreement, more_processes};
-use crate::error::{InputError, Result};
+use super::statements::{Evidence, JOINT_LEVEL, Kind, Reproduction, Statement, Unjudged, judge_together};
+use super::together::Schedules;
+use super::{Cell, Definition, MACHINE, Profile, RunFile, packed_rows, read_run_file};
+use crate::analysis::adjacent_pairs::{FEWEST_PROCESSES, by_process, log_ratio};
+use crate::analysis::confidence_sequence::Stopping;
+use crate::analysis::equivalence::Measured;
+use crate::analysis::jackknife::{SeedCurves, curves_of};
+use crate::analysis::quantile::median;
+use crate::analysis::ranking::ratios_in_pairs;
+use crate::analysis::slope::exponent;
+use crate::atomic_file;
+use crate::error::{Error, InputError, Result};
 use crate::input::read_text;
 use crate::lab::Lab;
-use crate::measure::{Record, SETTINGS, Setting};
-use serde::Serialize;
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use crate::measure::{ImageKey, Machine, Record, SETTINGS, Setting, available_threads};
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Confidence that no verdict *not reproduced* is wrong, over all statements together.
-pub const JOINT_LEVEL: f64 = 0.95;
+/// The file of verdicts in the folder of a replication.
+pub const REPLICATION: &str = "replication.json";
 
-/// The definition and the profile of somebody's rows, and the processors of their machine.
-pub fn definition_of(lab: &Arc<Lab>, theirs: &Path) -> Result<(Definition, Profile, usize)> {
-    let path = theirs.join("experiment.toml");
-    let name = theirs.canonicalize().unwrap_or_else(|_| theirs.to_path_buf());
-    let name = name.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let definition = Definition::from_text(lab, &name, &path.display().to_string(), &read_text(&path)?)?;
-    let path = theirs.join(super::MACHINE);
-    let run = super::read_run_file(&path)?;
-    let profile = Profile::from_name(&run.profile).ok_or_else(|| {
-        InputError::new("profile", &run.profile, "is no profile").in_file(path.display().to_string(), None)
-    })?;
-    Ok((definition, profile, run.machine.processors))
+/// The rows of somebody's experiment.
+pub struct Theirs {
+    pub folder: PathBuf,
+    pub definition: Definition,
+    pub profile: Profile,
+    pub machine: Machine,
 }
 
-/// A statement of somebody's rows, and what the rows here say about it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Statement {
-    pub experiment: String,
-    pub says: String,
-    /// Their ratio and the one here; `None` for an image.
-    pub theirs: Option<f64>,
-    pub here: Option<f64>,
-    /// Here over theirs, with the ends of its interval.
-    pub difference: Option<[f64; 3]>,
-    pub verdict: Reproduction,
-}
+impl Theirs {
+    pub fn read(lab: &Arc<Lab>, folder: &Path) -> Result<Self> {
+        let path = folder.join("experiment.toml");
+        let name = folder.canonicalize().unwrap_or_else(|_| folder.to_path_buf());
+        let name = name.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let definition = Definition::from_text(lab, &name, &path.display().to_string(), &read_text(&path)?)?;
+        let path = folder.join(MACHINE);
+        let RunFile { profile, machine, .. } = read_run_file(&path)?;
+        let profile = Profile::from_name(&profile).ok_or_else(|| {
+            InputError::new("profile", &profile, "is no profile").in_file(path.display().to_string(), None)
+        })?;
+        Ok(Self { folder: folder.to_path_buf(), definition, profile, machine })
+    }
 
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case", tag = "is", content = "why")]
-pub enum Reproduction {
-    Reproduced,
-    NotReproduced,
-    /// How many more processes would tell; `None` if theirs are too few.
-    CannotTell(Option<usize>),
-    /// Why there are no rows here: something that this machine lacks, or the error of its rows.
-    OtherHardware(String),
-}
+    /// Why a cell cannot be measured here: on their machine it used more processors than there are here.
+    fn absent(&self, cell: &Cell) -> Option<String> {
+        more_than_here(cell.settings.threads.min(self.machine.processors), "processor")
+    }
 
-impl Reproduction {
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Reproduced => "reproduced",
-            Self::NotReproduced => "not reproduced",
-            Self::CannotTell(_) => "cannot tell",
-            Self::OtherHardware(_) => "other hardware",
+    /// The filters that leave the cells which can run here. If there are none, the error says why.
+    pub fn runnable(&self) -> Result<std::result::Result<Vec<String>, String>> {
+        if let Some((feature, takes)) = self.definition.missing_feature() {
+            return Ok(Err(format!("this build lacks {feature}: {takes}")));
         }
+        let cells = self.definition.cells(self.profile)?;
+        let absent: Vec<String> = cells.iter().filter_map(|cell| self.absent(cell)).collect();
+        let here = cells.iter().filter(|cell| self.absent(cell).is_none()).map(|cell| cell.settings.threads);
+        let here: Vec<String> = here.collect::<BTreeSet<usize>>().iter().map(usize::to_string).collect();
+        Ok(match (absent.first(), here.is_empty()) {
+            (None, _) => Ok(Vec::new()),
+            (Some(why), true) => Err(why.clone()),
+            (Some(_), false) => Ok(vec![format!("threads={}", here.join(","))]),
+        })
+    }
+
+    /// Compares their rows with those in a folder. Ratios and exponents that differ by less than `share` count as equal.
+    pub fn compare(&self, here: &Path, share: f64) -> Result<Statements> {
+        let cells = self.definition.cells(self.profile)?;
+        let pairs = Comparisons::of_any(&self.definition, self.profile, &cells)?.pairs;
+        let [theirs, here] = [self.folder.as_path(), here].map(Rows::read);
+        let absent = |cell: &Cell| self.absent(cell);
+        let experiment = &self.definition.name;
+        let both = Both { experiment, cells: &cells, theirs: theirs?, here: here?, share, absent: &absent };
+        Ok(Statements(both.statements(&pairs)))
+    }
+
+    /// The statement that none of it can be measured here, and why.
+    pub fn cannot_be_measured(&self, why: String) -> Statements {
+        let (experiment, says) = (self.definition.name.clone(), "all cells".to_string());
+        Statements(vec![Unjudged { experiment, kind: Kind::Cells, says, evidence: Evidence::lacking(None, why) }])
     }
 }
 
-/// A ratio of somebody's rows beside the one here, before all are judged together.
-struct Ratio {
-    says: String,
-    theirs: LogRatio,
-    here: std::result::Result<LogRatio, String>,
+/// Names the number of threads or processors if it is larger than the number of processors here.
+fn more_than_here(count: usize, thing: &str) -> Option<String> {
+    let here = available_threads();
+    let plural = if count == 1 { "" } else { "s" };
+    (count > here).then(|| format!("{count} {thing}{plural} instead of {here}"))
 }
 
-/// The statements of an experiment.
-#[derive(Default)]
-pub struct Statements {
-    experiment: String,
-    ratios: Vec<Ratio>,
-    /// Images by what they show: whether the checksums are the same; `Err` if there is no image here, and why.
-    images: Vec<(String, std::result::Result<bool, String>)>,
-}
+/// The statements of an experiment, before those of all are judged together.
+pub struct Statements(Vec<Unjudged>);
 
-type Times = BTreeMap<(u32, Option<u32>), f64>;
-
-/// Rows that did not fail, by cell; and the errors of the others.
-struct Rows {
+/// Rows that did not fail; and by cell the errors of the others.
+pub(super) struct Rows {
     rows: Vec<Record>,
     failed: BTreeMap<String, String>,
+    stopping: Stopping,
+    /// Whether the limits of matrices on repetitions did not apply.
+    uncapped: bool,
 }
 
 impl Rows {
     fn read(folder: &Path) -> Result<Self> {
-        let path = packed_rows::records_path(folder);
-        let all = if path.is_file() { read_records(&path)? } else { Vec::new() };
+        let (rows, run) = (packed_rows::records_path(folder), folder.join(MACHINE));
+        let all = if rows.is_file() { read_records(&rows)? } else { Vec::new() };
+        let run = if run.is_file() { read_run_file(&run)? } else { RunFile::default() };
+        Ok(Self::of(all, run.stopping(), run.uncapped))
+    }
+
+    pub(super) fn of(all: Vec<Record>, stopping: Stopping, uncapped: bool) -> Self {
         let (rows, failed): (Vec<_>, Vec<_>) =
             all.into_iter().partition(|row| row.error.is_empty() && !row.is_left_out());
-        let why = |row: Record| {
-            let why = if row.error.is_empty() { row.warnings } else { row.error };
-            (row.cell, why)
+        let why = |row: Record| (row.cell, if row.error.is_empty() { row.warnings } else { row.error });
+        Self { rows, failed: failed.into_iter().map(why).collect(), stopping, uncapped }
+    }
+
+    fn schedules(&self, cells: &[Cell]) -> BTreeMap<ImageKey, Schedules> {
+        schedules_of(&self.rows, &if self.uncapped { BTreeSet::new() } else { capped(cells) })
+    }
+
+    /// The exponent of RMSE against samples of each image, over its seeds.
+    fn slopes(&self) -> BTreeMap<ImageKey, Measured> {
+        let mut images: BTreeMap<ImageKey, BTreeMap<u32, BTreeMap<u64, f64>>> = BTreeMap::new();
+        for (row, mse) in self.rows.iter().filter_map(|row| Some((row, row.mse?))) {
+            let errors = images.entry(of_curve(row.image_key())).or_default();
+            errors.entry(row.spp).or_default().entry(row.seed).or_insert(mse);
+        }
+        let slope = |errors: BTreeMap<u32, BTreeMap<u64, f64>>| {
+            let seeds = errors.values().flat_map(BTreeMap::keys).copied().collect();
+            let curves: Vec<_> = curves_of(&seeds, errors).into_values().collect();
+            exponent(&SeedCurves::of_errors(&curves)?)
         };
-        Ok(Self { rows, failed: failed.into_iter().map(why).collect() })
-    }
-
-    fn times(&self) -> BTreeMap<&str, Times> {
-        let mut times: BTreeMap<&str, Times> = BTreeMap::new();
-        for row in &self.rows {
-            if let Some(seconds) = row.makespan_s {
-                times.entry(&row.cell).or_default().insert((row.repetition, row.pair), seconds);
-            }
-        }
-        times
-    }
-
-    /// The checksums of each cell: repetitions and pairs share one. Samplers that draw other numbers in each run leave none.
-    fn checksums(&self) -> BTreeMap<&str, BTreeSet<&str>> {
-        let mut found: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
-        for row in self.rows.iter().filter(|row| !row.checksum.is_empty()) {
-            found.entry(&row.cell).or_default().insert(&row.checksum);
-        }
-        found
-    }
-
-    fn why_not(&self, cell: &str) -> String {
-        self.failed.get(cell).cloned().unwrap_or_else(|| "no rows here".to_string())
+        images.into_iter().filter_map(|(image, errors)| Some((image, slope(errors)?))).collect()
     }
 }
 
-impl Statements {
-    /// Compares the rows of one experiment. `absent` says why a cell is not run here, if it is not.
-    pub fn of(
-        (definition, profile): (&Definition, Profile),
-        [theirs, here]: [&Path; 2],
-        absent: impl Fn(&Cell) -> Option<String>,
-    ) -> Result<Self> {
-        let [theirs, here] = [Rows::read(theirs)?, Rows::read(here)?];
-        let cells = definition.cells(profile)?;
-        let [their_times, times] = [&theirs, &here].map(Rows::times);
-        let ratio = |times: &BTreeMap<&str, Times>, [what, with]: [&Cell; 2]| {
-            let (what, with) = (times.get(what.id.as_str())?, times.get(with.id.as_str())?);
-            let ratios = what.iter().filter_map(|(turn, seconds)| Some((turn.0, seconds / with.get(turn)?)));
-            LogRatio::of(&by_process(ratios))
+/// The key that the points of an error curve share.
+fn of_curve(image: ImageKey) -> ImageKey {
+    ImageKey { spp: 0, seed: 0, ..image }
+}
+
+/// Their rows of an experiment, and those here.
+pub(super) struct Both<'a> {
+    pub(super) experiment: &'a str,
+    pub(super) cells: &'a [Cell],
+    pub(super) theirs: Rows,
+    pub(super) here: Rows,
+    /// Ratios and exponents that differ by less count as equal.
+    pub(super) share: f64,
+    /// Why a cell is not measured here, if it is not.
+    pub(super) absent: &'a dyn Fn(&Cell) -> Option<String>,
+}
+
+impl Both<'_> {
+    pub(super) fn statements(&self, pairs: &[Comparison]) -> Vec<Unjudged> {
+        let kinds = [self.ratios(pairs), self.orders(), self.slopes(), self.images(), self.others()];
+        kinds.into_iter().flatten().collect()
+    }
+
+    fn unjudged(&self, kind: Kind, says: String, evidence: Evidence) -> Unjudged {
+        Unjudged { experiment: self.experiment.to_string(), kind, says, evidence }
+    }
+
+    /// Why none of the cells that are meant has rows here.
+    fn why_not(&self, is_meant: impl Fn(&Cell) -> bool) -> String {
+        let meant: Vec<&Cell> = self.cells.iter().filter(|cell| is_meant(cell)).collect();
+        let absent = meant.iter().find_map(|cell| (self.absent)(cell));
+        let points = || meant.iter().flat_map(|cell| &cell.points);
+        absent
+            .or_else(|| points().find_map(|point| self.here.failed.get(&point.id)).cloned())
+            .unwrap_or_else(|| "no rows here".to_string())
+    }
+
+    fn ratios(&self, pairs: &[Comparison]) -> Vec<Unjudged> {
+        let [theirs, here] = [&self.theirs, &self.here].map(|rows| times(&rows.rows));
+        let processes = |times: &Cells, [what, with]: [&Cell; 2]| {
+            Some(by_process(ratios_in_pairs(times.get(&what.id)?, times.get(&with.id)?)))
         };
-        let mut ratios = Vec::new();
-        for pair in Comparisons::of_any(definition, profile, &cells)?.pairs {
-            let both = [&cells[pair.what], &cells[pair.with]];
-            let Some(theirs) = ratio(&their_times, both) else { continue };
-            let lacking = both.into_iter().find_map(&absent);
-            let own = lacking.map_or_else(|| ratio(&times, both).ok_or_else(|| here.why_not(&both[0].id)), Err);
-            ratios.push(Ratio { says: told(both), theirs, here: own });
-        }
-        let [their_sums, sums] = [&theirs, &here].map(Rows::checksums);
-        let mut by_image: BTreeMap<&str, Vec<(&Cell, &str)>> = BTreeMap::new();
-        for cell in cells.iter().filter(|cell| cell.external.is_none()) {
-            for point in &cell.points {
-                by_image.entry(&point.image).or_default().push((cell, &point.id));
-            }
-        }
-        let mut images = Vec::new();
-        for (image, points) in by_image {
-            let all = |sums: &BTreeMap<&str, BTreeSet<&str>>| -> BTreeSet<String> {
-                let own = points.iter().filter_map(|(_, id)| sums.get(id)).flatten();
-                own.map(ToString::to_string).collect()
+        let of_pair = |pair: &Comparison| {
+            let both = [&self.cells[pair.what], &self.cells[pair.with]];
+            let earlier = log_ratio(&processes(&theirs, both)?)?;
+            let ratio = Some(libm::exp(earlier.value));
+            let later = processes(&here, both).filter(|own| !own.is_empty());
+            let evidence = match later.filter(|_| !both.into_iter().any(|cell| (self.absent)(cell).is_some())) {
+                None => Evidence::lacking(ratio, self.why_not(|cell| both.iter().any(|own| own.id == cell.id))),
+                Some(own) => match log_ratio(&own) {
+                    Some(later) => {
+                        Evidence::Values { theirs: earlier, here: later, limit: libm::log(1.0 + self.share) }
+                    }
+                    None => {
+                        let more = FEWEST_PROCESSES.checked_sub(own.len()).filter(|more| *more > 0);
+                        let verdict = Reproduction::CannotTell(more);
+                        Evidence::Known { theirs: ratio, verdict, note: String::new() }
+                    }
+                },
             };
-            let (theirs, own) = (all(&their_sums), all(&sums));
-            let Some((first, id)) = points.first().filter(|_| !theirs.is_empty()) else { continue };
-            let same =
-                if own.is_empty() { Err(absent(first).unwrap_or_else(|| here.why_not(id))) } else { Ok(own == theirs) };
-            images.push((format!("image {image}"), same));
+            Some(self.unjudged(Kind::Ratio, told(both), evidence))
+        };
+        pairs.iter().filter_map(of_pair).collect()
+    }
+
+    /// For each image the orders by more than the margin of which `rank` is sure in their rows.
+    fn orders(&self) -> Vec<Unjudged> {
+        let (theirs, mut here) = (self.theirs.schedules(self.cells), self.here.schedules(self.cells));
+        let miss = MISS / theirs.len().max(1) as f64;
+        let of_image = |(image, schedules): (ImageKey, Schedules)| {
+            let is_apart = |(faster, slower): &(String, String)| {
+                let ratios = ratios_in_pairs(&schedules[slower].times, &schedules[faster].times);
+                let ratios: Vec<f64> = ratios.into_iter().map(|(_, ratio)| ratio).collect();
+                median(&ratios).is_some_and(|ratio| ratio > 1.0 + self.share)
+            };
+            let told = told_orders(&schedules, miss, self.theirs.stopping);
+            let told: BTreeSet<(String, String)> = told.into_iter().filter(is_apart).collect();
+            let named: BTreeSet<&String> = told.iter().flat_map(|(faster, slower)| [faster, slower]).collect();
+            let mut own = here.remove(&image).unwrap_or_default();
+            own.retain(|name, _| named.contains(name));
+            let says = format!("orders of {} schedules, {image}", named.len());
+            let evidence = if own.len() < 2 {
+                let lacks = |cell: &Cell| {
+                    let schedule = cell.id.strip_prefix(&format!("{image}/")).unwrap_or(&cell.id);
+                    named.contains(&schedule.to_string()) && !own.contains_key(schedule)
+                };
+                Evidence::lacking(Some(told.len() as f64), self.why_not(lacks))
+            } else {
+                Evidence::Orders { theirs: told.clone(), here: own, stopping: self.here.stopping }
+            };
+            (!told.is_empty()).then(|| self.unjudged(Kind::Order, says, evidence))
+        };
+        theirs.into_iter().filter_map(of_image).collect()
+    }
+
+    fn slopes(&self) -> Vec<Unjudged> {
+        let here = self.here.slopes();
+        let of_image = |(image, theirs): (ImageKey, Measured)| {
+            // Points differ in samples and seeds.
+            let says = format!("slope of RMSE, {}", image.to_string().replace("/0spp/seed0", ""));
+            let evidence = match here.get(&image) {
+                Some(here) => Evidence::Values { theirs, here: *here, limit: self.share * theirs.value.abs() },
+                None => {
+                    Evidence::lacking(Some(theirs.value), self.why_not(|cell| of_curve(cell.keys.0.clone()) == image))
+                }
+            };
+            self.unjudged(Kind::Slope, says, evidence)
+        };
+        self.theirs.slopes().into_iter().map(of_image).collect()
+    }
+
+    fn images(&self) -> Vec<Unjudged> {
+        let [theirs, here] = [&self.theirs, &self.here].map(|rows| {
+            let mut images = ImageBits::default();
+            // A time limit ends each run at other samples.
+            images.add(rows.rows.iter().filter(|row| row.time_limit_s.is_none()));
+            images
+        });
+        let of_image = |(image, bits): (&ImageKey, SameBits)| {
+            let says = format!("image {image}");
+            let known = |verdict, note| Evidence::Known { theirs: None, verdict, note };
+            let evidence = match bits {
+                SameBits::Same => known(Reproduction::Reproduced, String::new()),
+                SameBits::Other(note) => known(Reproduction::NotReproduced, note),
+                SameBits::Lacking => {
+                    let word = image.to_string();
+                    let shows = |cell: &Cell| cell.points.iter().any(|point| point.image == word);
+                    Evidence::lacking(None, self.why_not(shows))
+                }
+            };
+            self.unjudged(Kind::Image, says, evidence)
+        };
+        here.beside(&theirs).map(of_image).collect()
+    }
+
+    /// Their cells that the definition does not have here, such as those with a thread for each of their processors.
+    fn others(&self) -> Vec<Unjudged> {
+        let points = self.cells.iter().flat_map(|cell| &cell.points);
+        let known: HashSet<&str> = points.map(|point| point.id.as_str()).collect();
+        let mut others: BTreeMap<String, BTreeSet<&str>> = BTreeMap::new();
+        for row in self.theirs.rows.iter().filter(|row| !known.contains(row.cell.as_str())) {
+            let why = more_than_here(row.threads, "thread");
+            let why = why.unwrap_or_else(|| "this version of the program has no such cell".to_string());
+            others.entry(why).or_default().insert(&row.cell);
         }
-        Ok(Self { experiment: definition.name.clone(), ratios, images })
+        let of_reason = |(why, cells): (String, BTreeSet<&str>)| {
+            let first = cells.first().copied().unwrap_or_default();
+            let says = match cells.len() {
+                1 => format!("cell {first}"),
+                count => format!("{count} cells, such as {first}"),
+            };
+            self.unjudged(Kind::Cells, says, Evidence::lacking(None, why))
+        };
+        others.into_iter().map(of_reason).collect()
     }
 }
 
@@ -180,52 +307,74 @@ fn told([what, with]: [&Cell; 2]) -> String {
     format!("time of {} over {}, {}", of(what), of(with), what.settings.scene)
 }
 
-/// Judges the statements of all experiments together: ratios against the margin, at one joint level, and images by their
-/// checksums.
-pub fn judge_together(all: Vec<Statements>, margin: f64) -> Vec<Statement> {
-    let count = all.iter().flat_map(|own| &own.ratios).filter(|ratio| ratio.here.is_ok()).count();
-    let level = 1.0 - (1.0 - JOINT_LEVEL) / count.max(1) as f64;
-    let of_ratio = |experiment: &str, Ratio { says, theirs, here }: Ratio| {
-        let mut statement = Statement {
-            experiment: experiment.to_string(),
-            says,
-            theirs: Some(libm::exp(theirs.value)),
-            here: here.as_ref().ok().map(|own| libm::exp(own.value)),
-            difference: None,
-            verdict: Reproduction::CannotTell(None),
-        };
-        statement.verdict = match here {
-            Err(why) => Reproduction::OtherHardware(why),
-            Ok(own) => match agreement(theirs, own, margin, level) {
-                None => Reproduction::CannotTell(None),
-                Some((difference, verdict)) => {
-                    statement.difference = Some(difference);
-                    match verdict {
-                        Agreement::Reproduced => Reproduction::Reproduced,
-                        Agreement::NotReproduced => Reproduction::NotReproduced,
-                        Agreement::CannotTell => Reproduction::CannotTell(more_processes(theirs, own, margin, level)),
-                    }
-                }
-            },
-        };
-        statement
-    };
-    let of_image = |experiment: &str, (says, same): (String, std::result::Result<bool, String>)| Statement {
-        experiment: experiment.to_string(),
-        says,
-        theirs: None,
-        here: None,
-        difference: None,
-        verdict: match same {
-            Ok(true) => Reproduction::Reproduced,
-            Ok(false) => Reproduction::NotReproduced,
-            Err(why) => Reproduction::OtherHardware(why),
-        },
-    };
-    let mut statements = Vec::new();
-    for Statements { experiment, ratios, images } in all {
-        statements.extend(ratios.into_iter().map(|ratio| of_ratio(&experiment, ratio)));
-        statements.extend(images.into_iter().map(|image| of_image(&experiment, image)));
+/// A fact about the machines: theirs, and the one here.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MachineFact {
+    pub name: String,
+    pub theirs: String,
+    pub here: String,
+}
+
+/// The verdicts on all statements of a folder.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Replication {
+    /// The folder of their rows, as the user gave it.
+    pub theirs: String,
+    /// Ratios and exponents that differ by less than this share count as equal.
+    pub share: f64,
+    /// Confidence that no verdict on a ratio, an order or a slope is wrong.
+    pub joint_level: f64,
+    /// Confidence of each interval.
+    pub level: f64,
+    pub machines: Vec<MachineFact>,
+    pub statements: Vec<Statement>,
+}
+
+impl Replication {
+    /// Judges the statements of all experiments together. `machines` are theirs and those of the rows here.
+    pub fn of(theirs: &Path, share: f64, all: Vec<Statements>, machines: [&[Machine]; 2]) -> Self {
+        let (statements, level) = judge_together(all.into_iter().flat_map(|Statements(own)| own).collect());
+        Self {
+            theirs: theirs.display().to_string(),
+            share,
+            joint_level: JOINT_LEVEL,
+            level,
+            machines: side_by_side(machines),
+            statements,
+        }
     }
-    statements
+
+    pub fn write(&self, path: &Path) -> Result<()> {
+        let text = serde_json::to_string_pretty(self).map_err(|e| Error::system("writing", path, e.into()))?;
+        atomic_file::write(path, |file| file.write_all(format!("{text}\n").as_bytes()))
+    }
+
+    pub fn read(path: &Path) -> Result<Self> {
+        serde_json::from_str(&read_text(path)?).map_err(|e| {
+            let error = InputError::new("replication", "", format!("is not the result of a replication: {e}"));
+            error.in_file(path.display().to_string(), Some((e.line(), e.column()))).into()
+        })
+    }
+}
+
+fn side_by_side(machines: [&[Machine]; 2]) -> Vec<MachineFact> {
+    let facts: [(&str, fn(&Machine) -> String); 9] = [
+        ("processor", |own| own.cpu.clone()),
+        ("model", |own| own.cpu_model.clone()),
+        ("instruction sets", |own| own.cpu_features.clone()),
+        ("processors", |own| own.processors.to_string()),
+        ("memory", |own| format!("{:.1} GiB", own.memory_bytes as f64 / f64::from(1 << 30))),
+        ("system", |own| own.system.clone()),
+        ("governor", |own| own.governor.clone()),
+        ("compiler", |own| [own.rustc.as_str(), own.rustflags.as_str()].join(" ").trim().to_string()),
+        ("Pathmark's sources", |own| format!("{}{}", own.commit, if own.dirty { " with changes" } else { "" })),
+    ];
+    let fact = |(name, of): (&str, fn(&Machine) -> String)| {
+        let [theirs, here] = machines.map(|all| {
+            let values: BTreeSet<String> = all.iter().map(of).collect();
+            values.into_iter().collect::<Vec<String>>().join("; ")
+        });
+        MachineFact { name: name.to_string(), theirs, here }
+    };
+    facts.into_iter().map(fact).collect()
 }

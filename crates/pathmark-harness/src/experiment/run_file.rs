@@ -1,6 +1,7 @@
 //! `machine.toml`: the machine on which the rows beside it were measured, and the command.
 
 use super::{Cell, Profile, Sweep};
+use crate::analysis::confidence_sequence::Stopping;
 use crate::atomic_file;
 use crate::digest;
 use crate::error::{InputError, Result};
@@ -77,6 +78,11 @@ impl RunFile {
         let text = toml::to_string_pretty(self)
             .map_err(|e| InputError::new("machine", "", format!("cannot be written as TOML: {e}")))?;
         atomic_file::write(path, |out| out.write_all(text.as_bytes()))
+    }
+
+    /// How the number of repetitions was chosen.
+    pub(super) fn stopping(&self) -> Stopping {
+        if self.until.is_some() { Stopping::Sequential } else { Stopping::Fixed }
     }
 
     /// Refuses to mix rows that are not repetitions of each other: another processor, revision, profile or definition.

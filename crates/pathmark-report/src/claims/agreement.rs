@@ -7,12 +7,10 @@ use super::verdict::Verdict;
 use crate::analysis::Interval;
 use crate::class::{Member, members};
 use crate::error::Result;
-use crate::experiment::{read_records, records_path};
+use crate::experiment::{ImageBits, SameBits, read_records, records_path};
 use crate::lab::Lab;
-use crate::measure::ImageKey;
 use crate::words::counted;
 use serde::Serialize;
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -29,6 +27,12 @@ struct Shared {
     differing: Vec<String>,
     /// How many the earlier results have and these lack.
     lacking: usize,
+}
+
+impl Shared {
+    fn agreeing(&self) -> usize {
+        self.in_both - self.differing.len()
+    }
 }
 
 /// How results agree with earlier ones.
@@ -95,12 +99,20 @@ impl Agreement {
         &self.images.differing
     }
 
+    /// How many images, findings and verdicts both results have, how many of them agree, and how many these lack.
+    pub fn table(&self) -> [[String; 4]; 3] {
+        let row = |name: &str, own: &Shared| {
+            [name.to_string(), own.in_both.to_string(), own.agreeing().to_string(), own.lacking.to_string()]
+        };
+        [row("images", &self.images), row("findings", &self.findings), row("verdicts", &self.verdicts)]
+    }
+
     /// A line for each finding and each verdict that is another one, and one sentence.
     pub fn in_words(&self) -> String {
         let Self { rows, experiments, images, findings, same_side, verdicts, earlier } = self;
         let earlier = earlier.display();
-        let agreeing = |own: &Shared| format!("{} of {}", own.in_both - own.differing.len(), own.in_both);
-        let overlapping = findings.in_both - findings.differing.len() - same_side.len();
+        let agreeing = |own: &Shared| format!("{} of {}", own.agreeing(), own.in_both);
+        let overlapping = findings.agreeing() - same_side.len();
         let more = match (findings.lacking, verdicts.lacking) {
             (0, 0) => "More rows would add nothing to this comparison.".to_string(),
             (findings, verdicts) => format!(
@@ -124,12 +136,12 @@ impl Agreement {
     }
 }
 
-/// The checksums of the images in some folders of results.
+/// The images in some folders of results.
 #[derive(Default)]
 struct Images {
     rows: usize,
     experiments: usize,
-    checksums: BTreeMap<ImageKey, String>,
+    bits: ImageBits,
 }
 
 impl Images {
@@ -137,28 +149,29 @@ impl Images {
         let mut all = Self::default();
         for out in folders {
             for Member { folder, .. } in members(out)? {
+                let rows = read_records(&records_path(&folder))?;
                 all.experiments += 1;
-                for row in read_records(&records_path(&folder))?.into_iter().filter(|row| row.error.is_empty()) {
-                    all.rows += 1;
-                    // Samplers that draw other random numbers in each run have none.
-                    if !row.checksum.is_empty() {
-                        all.checksums.insert(row.image_key(), row.checksum);
-                    }
-                }
+                all.rows += rows.iter().filter(|row| row.error.is_empty()).count();
+                all.bits.add(&rows);
             }
         }
         Ok(all)
     }
 
     fn compare(&self, earlier: &Self) -> Shared {
-        let both = self.checksums.iter().filter_map(|(key, own)| Some((key, own, earlier.checksums.get(key)?)));
-        let both: Vec<_> = both.collect();
-        let differing = both.iter().filter(|(_, own, other)| own != other);
-        Shared {
-            in_both: both.len(),
-            differing: differing.map(|(key, own, other)| format!("{key}: checksum {own} instead of {other}")).collect(),
-            lacking: earlier.checksums.len() - both.len(),
+        let mut found = Shared::default();
+        for (image, bits) in self.bits.beside(&earlier.bits) {
+            match bits {
+                SameBits::Lacking => {
+                    found.lacking += 1;
+                    continue;
+                }
+                SameBits::Other(how) => found.differing.push(format!("{image}: {how}")),
+                SameBits::Same => {}
+            }
+            found.in_both += 1;
         }
+        found
     }
 }
 

@@ -12,6 +12,7 @@ pub(crate) mod guards;
 mod index;
 mod notes;
 mod photo;
+pub mod replication;
 pub(crate) mod table;
 
 use crate::error::{Error, Result};
