@@ -33,7 +33,7 @@ Examples:
   pathmark reproduce                                         run all experiments
   pathmark simulate rows.csv --workers 1..64                 forecast a traced run on more cores
 
-Measure: reproduce, run, rank, why, diff, price, bursts, grade, report, claims, replicate    Render: render, merge, image
+Measure: reproduce, run, rank, why, diff, price, bursts, grade, report, claims, replicate, artifact    Render: render, merge, image
 Look inside: inspect, simulate    Ask: doctor, machine, list, new, contract, selftest, shell";
 
 /// A laboratory for scheduling unequal work on many cores, and for what accuracy costs in time.
