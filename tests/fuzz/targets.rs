@@ -9,6 +9,7 @@ use pathmark::film_file::read_film;
 use pathmark::image_io::{self, Image};
 use pathmark::kernel::Spec;
 use pathmark::measure::{Checkpoint, Position, Record, Rounds, Settings, Setup, TraceFile};
+use pathmark::report::artifact::{Citation, listed};
 use pathmark::scene::{self, SCENES};
 use sha2::{Digest, Sha256};
 use std::fs;
@@ -126,6 +127,20 @@ pub(crate) const TARGETS: &[Target] = &[
     },
     Target { name: "bmp", file: "image.bmp", read: image, ..TARGET },
     Target {
+        name: "crate",
+        file: "ro-crate-metadata.json",
+        read: |path| ok(listed(path)),
+        words: CRATE_WORDS,
+        ..TARGET
+    },
+    Target {
+        name: "citation",
+        file: "CITATION.cff",
+        read: |path| ok(Citation::read(path)),
+        words: CITATION_WORDS,
+        ..TARGET
+    },
+    Target {
         name: "report",
         file: "out/tiny/records.csv",
         prepare: beside_the_records,
@@ -227,6 +242,10 @@ const EXPERIMENT_WORDS: &[&str] = &[
 const CSV_WORDS: &[&str] = &[",", "\"", "\"\"", "\r\n", "\n", ",,", "true", "false", "serial", "nan", "\0"];
 const JSON_WORDS: &[&str] =
     &["{", "}", "\"width\":", "\"height\":", "\"spp\":", "null", "true", ":", "pathmark film 1\n", "\\ud800"];
+const CRATE_WORDS: &[&str] =
+    &["\"@graph\":", "\"@id\":", "\"File\"", "[", "]", "%2e%2e/", "%", "\"contentSize\":", "1e99", "null", "\\ud800"];
+const CITATION_WORDS: &[&str] =
+    &["title:", "authors:\n", "  - name: ", "license:\n", "  - ", "orcid: ", "\"", "'", ": ", " #", "---\n", "\\ud800"];
 const EXR_WORDS: &[&str] = &[
     "dataWindow\0box2i\0",
     "channels\0chlist\0",

@@ -1,6 +1,7 @@
 //! The program `pathmark` as a user runs it: one test program for all verbs.
 
 mod again;
+mod artifact;
 mod bursts;
 mod changed_inputs;
 mod claims;

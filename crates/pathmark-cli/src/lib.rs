@@ -33,7 +33,8 @@ Examples:
   pathmark reproduce                                         run all experiments
   pathmark simulate rows.csv --workers 1..64                 forecast a traced run on more cores
 
-Measure: reproduce, run, rank, why, diff, price, bursts, grade, report, claims, replicate    Render: render, merge, image
+Measure: reproduce, run, rank, why, diff, price, bursts, grade
+Tell: report, claims, replicate, artifact    Render: render, merge, image
 Look inside: inspect, simulate    Ask: doctor, machine, list, new, contract, selftest, shell
 
 Exit codes: 0 done, 1 a check failed, 2 the input is wrong, 3 the system refused";

@@ -1,5 +1,6 @@
 //! The report: turns records into figures, tables, findings and one self-contained page.
 
+pub mod artifact;
 pub mod bursts;
 pub mod claims;
 mod class;

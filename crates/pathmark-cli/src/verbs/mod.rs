@@ -1,5 +1,6 @@
 //! The verbs: one file for each, and files that several share.
 
+mod artifact;
 mod bursts;
 mod claims;
 mod contract;
@@ -77,6 +78,8 @@ pub(super) enum Verb {
     Claims(claims::Arguments),
     /// Measure somebody's rows again on this machine: which of their ratios, orders and images come out here, too?
     Replicate(replicate::Arguments),
+    /// Pack rows, ledger, verdicts and instructions for an artifact committee, or check such an archive.
+    Artifact(artifact::Arguments),
     /// Write a commented starter file for an experiment, a scene or a ledger of claims.
     New(new::Arguments),
     /// Examine this machine before a sweep: what disturbs measurements, and which differences can be seen?
@@ -109,6 +112,7 @@ impl Verb {
             Self::Bursts(arguments) => bursts::run(&arguments, lab, console),
             Self::Claims(arguments) => claims::run(&arguments, lab),
             Self::Replicate(arguments) => replicate::run(&arguments, lab, console),
+            Self::Artifact(arguments) => artifact::run(&arguments, lab),
             Self::Contract(arguments) => contract::run(&arguments, lab),
             Self::Grade(arguments) => grade::run(&arguments, lab, console),
             Self::Report(arguments) => report::run(&arguments, lab),

@@ -269,11 +269,7 @@ impl Report {
     /// Reads a ledger of somebody's own, or all of a folder in the order of their names. Numbers of claims and letters of
     /// reports must be unique.
     pub fn read(path: &Path) -> Result<Vec<Self>> {
-        let files = if path.is_dir() { ledgers_in(path)? } else { vec![path.to_path_buf()] };
-        if files.is_empty() {
-            let problem = "has no .toml file, so it is no folder of ledgers";
-            return Err(InputError::new("ledger", path.display().to_string(), problem).into());
-        }
+        let files = Self::files(path)?;
         let of_file = |file: &PathBuf| Self::from_text(&file.display().to_string(), &read_text(file)?);
         let ledgers = files.iter().map(of_file).collect::<Result<Vec<_>>>()?;
         let mut letters = BTreeSet::new();
@@ -293,11 +289,26 @@ impl Report {
         Ok(ledgers)
     }
 
+    /// The file of a ledger, or the files of a folder of ledgers by name.
+    pub(crate) fn files(path: &Path) -> Result<Vec<PathBuf>> {
+        let files = if path.is_dir() { ledgers_in(path)? } else { vec![path.to_path_buf()] };
+        if files.is_empty() {
+            let problem = "has no .toml file, so it is no folder of ledgers";
+            return Err(InputError::new("ledger", path.display().to_string(), problem).into());
+        }
+        Ok(files)
+    }
+
     /// The ledgers that a program added to its lab, or else the four reports.
     pub fn all(lab: &Lab) -> Result<Vec<Self>> {
+        let texts = Self::texts(lab).iter();
+        texts.map(|(name, text)| Self::from_text(&format!("claims/{name}.toml"), text)).collect()
+    }
+
+    /// The names and texts of these ledgers.
+    pub(crate) fn texts(lab: &Lab) -> &[(String, String)] {
         let own = lab.own_claims();
-        let texts = if own.is_empty() { experiment::claims() } else { own };
-        texts.iter().map(|(name, text)| Self::from_text(&format!("claims/{name}.toml"), text)).collect()
+        if own.is_empty() { experiment::claims() } else { own }
     }
 
     /// The evidence that answers a claim of this ledger.

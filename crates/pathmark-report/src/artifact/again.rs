@@ -1,0 +1,75 @@
+//! How the rows of a claim are measured again, and the estimated costs.
+
+use crate::claims::{Answer, Needs};
+use crate::error::{Error, InputError, Result};
+use crate::experiment::{Options, Plan, Prices, Sweep, definition_of};
+use crate::files::Files;
+use crate::lab::Lab;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// How the rows of a claim are measured.
+pub(super) enum Again {
+    /// As the experiment of this folder, a path in the archive.
+    Experiment(PathBuf),
+    HardCases,
+    /// Not by this program, and why.
+    Not(String),
+}
+
+impl Again {
+    /// How the rows of an answer are measured, whose sources are paths in the archive.
+    pub(super) fn of(answer: &Answer<'_>) -> Self {
+        match answer.report.needs(answer.claim) {
+            Needs::Experiment(name) => match answer.sources.first().and_then(|source| source.parent()) {
+                Some(folder) => Self::Experiment(folder.to_path_buf()),
+                None => Self::Not(format!("there are no rows of {name}")),
+            },
+            Needs::HardCases => Self::HardCases,
+            Needs::Table(file) => Self::Not(format!("another program measured them, into {file}")),
+            Needs::Nothing(why) => Self::Not(why),
+        }
+    }
+}
+
+/// The costs of an experiment on this machine, with its scenes.
+pub(super) struct Cost {
+    pub(super) plan: Plan,
+    /// The scene files that are not built in.
+    pub(super) scenes: BTreeSet<PathBuf>,
+}
+
+/// The costs of experiments by their folders in the archive, or why they are not known.
+pub(super) type Costs = BTreeMap<PathBuf, std::result::Result<Cost, String>>;
+
+/// Estimates by a pilot the costs of the experiments that answer claims.
+pub(super) fn costs(lab: &Arc<Lab>, archive: &Path, answers: &[Answer<'_>]) -> Result<Costs> {
+    let mut prices = Prices::new(lab);
+    let mut costs = Costs::new();
+    for answer in answers {
+        let Again::Experiment(folder) = Again::of(answer) else { continue };
+        if costs.contains_key(&folder) {
+            continue;
+        }
+        let cost = match cost(lab, &archive.join(&folder), &mut prices) {
+            Ok(cost) => Ok(cost),
+            Err(Error::Input(error)) => Err(error.to_string()),
+            Err(other) => return Err(other),
+        };
+        costs.insert(folder, cost);
+    }
+    Ok(costs)
+}
+
+fn cost(lab: &Arc<Lab>, folder: &Path, prices: &mut Prices<'_>) -> Result<Cost> {
+    let (definition, profile, _) = definition_of(lab, folder)?;
+    if let Some((_, takes)) = definition.missing_feature() {
+        return Err(InputError::new("requires", &definition.name, format!("needs {takes}")).into());
+    }
+    // Nothing is written there.
+    let options = Options { out: folder.join("again"), profile, ..Options::default() };
+    let plan = Sweep::new(&definition, &options, &mut Files::default())?.plan(prices)?;
+    let scenes = definition.cells(profile)?.into_iter().flat_map(|cell| cell.scene.files).collect();
+    Ok(Cost { plan, scenes })
+}
