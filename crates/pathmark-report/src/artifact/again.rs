@@ -2,7 +2,7 @@
 
 use crate::claims::{Answer, Needs};
 use crate::error::{Error, InputError, Result};
-use crate::experiment::{Options, Plan, Prices, Sweep, definition_of};
+use crate::experiment::{Options, Plan, Prices, Sweep, Theirs};
 use crate::files::Files;
 use crate::lab::Lab;
 use std::collections::{BTreeMap, BTreeSet};
@@ -63,7 +63,7 @@ pub(super) fn costs(lab: &Arc<Lab>, archive: &Path, answers: &[Answer<'_>]) -> R
 }
 
 fn cost(lab: &Arc<Lab>, folder: &Path, prices: &mut Prices<'_>) -> Result<Cost> {
-    let (definition, profile, _) = definition_of(lab, folder)?;
+    let Theirs { definition, profile, .. } = Theirs::read(lab, folder)?;
     if let Some((_, takes)) = definition.missing_feature() {
         return Err(InputError::new("requires", &definition.name, format!("needs {takes}")).into());
     }
