@@ -16,6 +16,8 @@ mod plain_rows_tests;
 mod statistic;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod unit_tests;
 mod verdict;
 
 pub use agreement::Agreement;
