@@ -137,8 +137,11 @@ window.addEventListener("load", () => {
   lanes.scrollIntoView({ block: "end" });
   const area = lanes.getBoundingClientRect();
   const job = lanes.closest("details").querySelector(".job");
-  for (let y = area.top + 1; y < area.bottom && !job.textContent.startsWith("Job "); y += 2) {
-    lanes.dispatchEvent(new PointerEvent("pointermove", { clientX: area.left + area.width / 4, clientY: y, bubbles: true }));
+  // Under foreign load a lane may be idle for most of the time.
+  for (let x = area.left + area.width / 4; x < area.right && !job.textContent.startsWith("Job "); x += area.width / 64) {
+    for (let y = area.top + 1; y < area.bottom && !job.textContent.startsWith("Job "); y += 2) {
+      lanes.dispatchEvent(new PointerEvent("pointermove", { clientX: x, clientY: y, bubbles: true }));
+    }
   }
   const lineOfJob = job.getBoundingClientRect();
   seen.job = [job.textContent, lineOfJob.top >= 0 && lineOfJob.bottom <= window.innerHeight];
