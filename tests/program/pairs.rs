@@ -66,6 +66,9 @@ fn compared_cells_run_in_turns() {
     assert_eq!(self::rows(&folder.path().join("out/tiny")).len(), 24);
     let ranked = json(&run(folder.path(), &["rank", "out/tiny", "--json"], 0));
     assert!(ranked.to_string().contains("\"repetitions\":3"), "{ranked}");
+    assert_eq!(ranked["least_repetitions"], 3);
+    let told = run(folder.path(), &["rank", "out/tiny"], 0).err;
+    assert!(!told.contains("cannot tell any two schedules apart"), "{told}");
     // The page draws speedups from both kinds of rows.
     let figure = fs::read_to_string(folder.path().join("out/tiny/figures/speedup.svg")).unwrap();
     assert!(figure.contains("work-stealing"), "{figure}");

@@ -57,8 +57,10 @@ pub fn keys() -> impl Iterator<Item = (String, String)> {
     let axes = SETTINGS.iter().map(|axis| {
         let own = AXES.iter().find(|(name, _)| *name == axis.name).map(|(_, about)| *about);
         let about = own.unwrap_or(axis.about);
-        let required = if REQUIRED.contains(&axis.name) { " [required]" } else { "" };
-        (format!("matrix.{}", axis.name), format!("{about}{required}"))
+        let is_required = REQUIRED.contains(&axis.name);
+        // The option of a render has a default where an experiment must say what it compares.
+        let required = || format!("{} [required]", about.split(" [default").next().unwrap_or_default());
+        (format!("matrix.{}", axis.name), if is_required { required() } else { about.to_string() })
     });
     KEYS.iter().map(|(key, about)| ((*key).to_string(), (*about).to_string())).chain(axes)
 }
@@ -88,6 +90,7 @@ mod tests {
     fn every_axis_is_explained() {
         for (key, about) in keys() {
             assert!(!about.trim_end_matches("[required]").trim().is_empty(), "{key}");
+            assert!(!(about.contains("[required]") && about.contains("[default")), "{key}: {about}");
         }
         let unknown = AXES.iter().find(|(name, _)| !SETTINGS.iter().any(|axis| axis.name == *name));
         assert_eq!(unknown, None);

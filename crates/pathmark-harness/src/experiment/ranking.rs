@@ -13,7 +13,7 @@ use super::run_file::{MACHINE, read_run_file};
 use super::stopping_rule::MOST_REPETITIONS;
 use super::together::{Schedules, Timed, parts};
 use crate::analysis::Interval;
-use crate::analysis::adjacent_pairs::{by_process, paired_ratio};
+use crate::analysis::adjacent_pairs::{FEWEST_PROCESSES, by_process, paired_ratio};
 use crate::analysis::confidence_sequence::{Stopping, median_sequence};
 use crate::analysis::quantile::median;
 use crate::analysis::ranking::{
@@ -98,7 +98,11 @@ pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Rank
     let comparisons = sizes().map(|size| size.saturating_sub(1)).sum::<usize>().max(1);
     let level = level_of(comparisons);
     let stopping = run.stopping();
-    let least = sizes().filter(|size| *size > 1).map(|size| least_repetitions(size, miss * tests(size), stopping));
+    let ranked = parts.iter().flat_map(|(_, parts)| parts).filter(|part| compared(part) > 1);
+    let least = ranked.map(|part| match compared(part) {
+        _ if stopping == Stopping::Fixed && part.values().any(|own| is_in_pairs(&own.times)) => FEWEST_PROCESSES as u32,
+        size => least_repetitions(size, miss * tests(size), stopping),
+    });
     let of_part = |image: &ImageKey, part: &Schedules, number: [usize; 2]| ImageRanking {
         image: image.to_string(),
         part: number,
