@@ -216,7 +216,7 @@ fn the_gain_of_a_hierarchy_is_told_at_the_most_spheres() {
     }
     let blocks = blocks(&results(&["acceleration"], "", rows).unwrap()).unwrap();
     let findings: Vec<&str> = blocks.iter().filter_map(Block::as_finding).collect();
-    let told = "The largest gain at 1000 spheres is that of sah: 20.0 (20.0 to 20.0, 96.8 %) times as fast as testing every \
+    let told = "The best hierarchy at 1000 spheres is sah: 20.0 (20.0 to 20.0, 96.8 %) times as fast as testing every \
                 sphere. It is faster from 100 spheres on; at 10 it is slower.";
     assert_eq!(findings, [told]);
     let gains =

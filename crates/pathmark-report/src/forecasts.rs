@@ -69,6 +69,11 @@ pub fn inflation(own_s: Option<f64>, serial_s: Option<f64>) -> f64 {
     own_s.zip(serial_s).filter(|(own, serial)| *own > 0.0 && *serial > 0.0).map_or(1.0, |(own, serial)| own / serial)
 }
 
+/// All runs, in words.
+pub(super) fn all_runs(runs: usize) -> String {
+    if runs == 1 { "the only run".to_string() } else { format!("all {runs} runs") }
+}
+
 /// Findings about the errors and about work inflation, and a table of predicted and measured makespans.
 pub fn prediction_blocks(Predicted { predictions, ratios }: &Predicted) -> Vec<Block> {
     let errors = |ratio: fn(&Prediction) -> Option<f64>| {
@@ -79,12 +84,13 @@ pub fn prediction_blocks(Predicted { predictions, ratios }: &Predicted) -> Vec<B
     let runs: usize = predictions.iter().map(|prediction| prediction.runs).sum();
     let quiet: usize = predictions.iter().map(|prediction| prediction.undisturbed).sum();
     let first = format!(
-        "{} of this machine predicted from serial runs. Over all {}: {all}.",
+        "{} of this machine predicted from serial runs. Over {}: {all}.",
         counted(predictions.len(), "schedule"),
-        counted(runs, "run"),
+        all_runs(runs),
     );
     let quietly = format!(
-        "Over the {quiet} runs whose CPU time was within {:.0} % of the serial run's, so that the schedule made their time",
+        "Over {} whose CPU time was within {:.0} % of the serial run's, so that the schedule made the time",
+        counted(quiet, "run"),
         100.0 * DISTURBED
     );
     let others = [

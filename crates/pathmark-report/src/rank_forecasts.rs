@@ -1,7 +1,7 @@
 //! Simulated and predicted runs of several processes as tables and a chart: for an experiment's figure and for
 //! `simulate --ranks`.
 
-use super::forecasts::{band, in_words, serial_costs};
+use super::forecasts::{all_runs, band, in_words, serial_costs};
 use crate::analysis::crossed::{Crossed, geometric_mean};
 use crate::cluster::MessageCosts;
 use crate::lab::{LOOK, Lab, RankRule};
@@ -96,9 +96,9 @@ pub fn rank_prediction_blocks(predictions: &[RankPrediction]) -> Vec<Block> {
     let Some(found) = agreement(&pairs) else { return Vec::new() };
     let runs = predictions.iter().map(|prediction| prediction.runs).sum();
     let finding = format!(
-        "{} of processes of this machine predicted from serial runs. Over all {}: {}.",
+        "{} of processes of this machine predicted from serial runs. Over {}: {}.",
         counted(predictions.len(), "schedule"),
-        counted(runs, "run"),
+        all_runs(runs),
         in_words(&found),
     );
     let table = Block::table("rank-predictions", "The simulator predicts processes on this machine", predictions)

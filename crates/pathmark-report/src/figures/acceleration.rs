@@ -154,7 +154,7 @@ fn crossover(of_sizes: &BTreeMap<&str, Gains>) -> Option<Block> {
         (_, None) => "At the largest number that is not certain.".to_string(),
     };
     Some(Block::finding(format!(
-        "The largest gain at {most} spheres is that of {name}{open}: {} times as fast as testing every sphere. {from}",
+        "The best hierarchy at {most} spheres is {name}{open}: {} times as fast as testing every sphere. {from}",
         with_interval(gain.value, &gain.interval, 1)
     )))
 }
@@ -202,10 +202,10 @@ fn against_spp(
         let verdict = if low <= high {
             format!("factors from {low:.2} to {high:.2} lie in its interval at every number of samples, so no dependence on the samples is seen")
         } else {
-            "no factor lies in its intervals at all numbers of samples".to_string()
+            "no factor lies in its interval at every number of samples, so the gain changes with them".to_string()
         };
         Some(Block::finding(format!(
-            "The largest gain at {spp} samples per pixel is that of {name}{open}: {} times as fast as without a hierarchy; {verdict}.",
+            "The best hierarchy at {spp} samples per pixel is {name}{open}: {} times as fast as without a hierarchy; {verdict}.",
             with_interval(gain.value, &gain.interval, 2)
         )))
     });

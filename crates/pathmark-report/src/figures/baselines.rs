@@ -61,7 +61,7 @@ fn finding(all: &[Against<'_>]) -> Option<Block> {
     let most = ranked.next()?;
     let verdict = if most.is_superlinear() { "superlinear" } else { "not superlinear" };
     let told = |Against { speedup, .. }: &Against<'_>, times: &str| {
-        format!("{:.2} {times} ({})", speedup.value, with_level(&speedup.interval, 2))
+        format!("{:.2} {times}, {}", speedup.value, with_level(&speedup.interval, 2))
     };
     let (name, workers) = (most.name(), most.workers());
     let highest = format!("{name}: {}, {verdict} on {workers} workers", told(most, "times as fast"));

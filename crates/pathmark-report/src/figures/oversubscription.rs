@@ -2,6 +2,7 @@
 
 use crate::prelude::*;
 use crate::serial::{with_pieces, without_pieces};
+use crate::words::with_interval;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
@@ -105,7 +106,7 @@ fn compared(results: &Results, claim: &Claim) -> Result<Option<(String, Block)>>
             (_, true) => "shorter",
             _ => "not told apart",
         };
-        Some(format!("{value:.2} times as long, {} ({verdict})", with_level(&interval, 2)))
+        Some(format!("{} times as long ({verdict})", with_interval(value, &interval, 2)))
     };
     let Some((sections, few)) = in_words(&against_sections).zip(in_words(&against_few)) else { return Ok(None) };
     let finding = Block::finding(format!(

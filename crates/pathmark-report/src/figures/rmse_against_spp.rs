@@ -172,9 +172,12 @@ fn samples_for_half(exponent: f64) -> f64 {
 fn bent(slopes: &[Slope]) -> Option<Block> {
     let count = slopes.iter().filter(|(_, fit)| fit.lacks_fit()).count();
     (count > 0).then(|| {
+        let (whose, them) = match slopes.len() {
+            1 => ("The points".to_string(), "it"),
+            all => (format!("The points of {count} of {all} curves"), "them"),
+        };
         Block::finding(format!(
-            "The points of {count} of {} curves do not lie on a line (the exponent changes along it by more than its interval), so no one exponent describes them.",
-            slopes.len()
+            "{whose} do not lie on a line: the exponent changes along the curve by more than its interval, so no one exponent describes {them}."
         ))
     })
 }

@@ -69,13 +69,13 @@ impl<'a> Contest<'a> {
         let (slower, open) = (self.slower.len(), self.open.len());
         let others = match self.slowest() {
             Some((slowest, ratio)) => format!(
-                " Paired with it, {slower} of {} others take longer, {} the longest: {:.3} ({}) times as long. Not told apart from it by this run: {open}.",
+                " Paired with it, {slower} of {} others take longer, {} the longest: {} times as long. Not told apart from it by this run: {open}.",
                 slower + open,
                 slowest.name,
-                ratio.value,
-                with_level(&ratio.interval, 3),
+                with_interval(ratio.value, &ratio.interval, 3),
             ),
             None if open == 0 => String::new(),
+            None if open == 1 => " The other schedule is not told apart from it by this run.".to_string(),
             None => format!(" None of {open} others is told apart from it by this run."),
         };
         Block::finding(format!(
@@ -147,6 +147,7 @@ impl<'a> Contest<'a> {
         let slowest = self.slowest();
         let text = match slowest {
             None if others == 0 => format!("{ties}."),
+            None if others == 1 => format!("{ties}; the other schedule is not told apart from it."),
             None => format!("{ties}; none of {others} others is told apart from it."),
             Some((slowest, ratio)) => format!(
                 "{ties}, and {} of {others} others tie with it. The slowest, {}, takes {} times as long.",
