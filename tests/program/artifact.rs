@@ -148,7 +148,7 @@ fn the_appendix_tells_what_each_claim_takes() {
     assert!(container.contains(&format!("ARG COMMIT={}\n", fact("commit"))), "{container}");
     let rust = fact("rustc").split(' ').nth(1).unwrap();
     assert!(container.contains(&format!("ARG RUST={rust}\n")), "{container}");
-    assert!(container.contains("FROM docker.io/library/debian:13.1-slim\n"), "{container}");
+    assert!(container.contains("FROM docker.io/library/debian:13.8-slim\n"), "{container}");
     assert!(container.ends_with("CMD [\"sh\", \"first-claim.sh\"]\n"), "{container}");
     assert!(read("CITATION.cff").contains("orcid: \"https://orcid.org/0000-0002-1825-0097\""));
     assert!(read("CLAIMS.md").contains("(rows/out/tiny/records.csv)"), "{}", read("CLAIMS.md"));

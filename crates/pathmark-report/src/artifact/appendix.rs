@@ -110,7 +110,12 @@ impl Appendix<'_> {
             ("Compilation", self.machines(|machine| format!("{}, profile {}", machine.rustc, machine.profile))),
             ("Data set", format!("the rows in `{ROWS}/`, of {}", counted(self.experiments.len(), "experiment"))),
             ("Run-time environment", self.machines(|machine| machine.system.clone())),
-            ("Hardware", self.machines(|machine| format!("{}, {}", machine.line(), megabytes(machine.memory_bytes)))),
+            (
+                "Hardware",
+                self.machines(|machine| {
+                    format!("{}, {:.1} GB of memory", machine.line(), machine.memory_bytes as f64 / 1e9)
+                }),
+            ),
             (
                 "Metrics",
                 "ratios, orders and slopes with intervals; seconds are not compared between machines".to_string(),

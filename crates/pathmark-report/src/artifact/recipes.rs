@@ -72,7 +72,7 @@ pub(super) fn container(
     format!(
         "# Builds Pathmark and judges the first claim by the rows of this folder:\n\
          #   podman build --tag artifact .\n#   podman run --rm artifact\n{again}{notes}\
-         FROM docker.io/library/debian:13.1-slim\n\
+         FROM docker.io/library/debian:13.8-slim\n\
          ARG REPOSITORY={}\nARG COMMIT={commit}\nARG RUST={rust}\n\
          RUN apt-get update \\\n && apt-get install --yes --no-install-recommends ca-certificates g++ git rustup \\\n \
          && rm -rf /var/lib/apt/lists/*\n\
