@@ -119,6 +119,9 @@ fn no_committed_figure_is_empty() {
     }
 }
 
+/// In the lines that say that there is no address.
+const WITHOUT: &str = "no public address yet";
+
 /// Every file has the address of the manifest, so one command writes another one into all of them.
 #[test]
 fn one_command_fills_in_the_address() {
@@ -134,7 +137,6 @@ fn one_command_fills_in_the_address() {
     }
     assert!(read("CONTRIBUTING.md").contains("address-to-be-chosen.invalid|"));
     // The command removes the lines that say that there is no address, so each is a whole sentence.
-    const WITHOUT: &str = "no public address yet";
     assert!(read("CONTRIBUTING.md").contains(&format!("/{WITHOUT}/d")));
     for name in ["README.md", "Cargo.toml", "examples/pool-template/README.md"] {
         let text = read(name);

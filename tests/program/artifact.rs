@@ -195,103 +195,107 @@ fn relist(archive: &Path, name: &str, text: &str) {
     fs::write(path, format!("{list:#}\n")).unwrap();
 }
 
+/// What is done to an archive, and what its check says.
+type Fault = (&'static str, fn(&Path), &'static [&'static str]);
+
+/// Changes a file and its line in the list, so that only its content is wrong.
+fn edit(archive: &Path, name: &str, change: impl Fn(&str) -> String) {
+    let text = fs::read_to_string(archive.join(name)).unwrap();
+    let changed = change(&text);
+    assert_ne!(text, changed, "{name}");
+    relist(archive, name, &changed);
+}
+
+const ROWS: &str = "rows/out/tiny/records.csv";
+
+const FAULTS: &[Fault] = &[
+    (
+        "a changed byte",
+        |archive| {
+            let mut bytes = fs::read(archive.join(ROWS)).unwrap();
+            let middle = bytes.len() / 2;
+            bytes[middle] ^= 1;
+            fs::write(archive.join(ROWS), bytes).unwrap();
+        },
+        &["ro-crate-metadata.json:", ": sha256 = ", ROWS],
+    ),
+    (
+        "a longer file",
+        |archive| {
+            let text = fs::read_to_string(archive.join("README.md")).unwrap();
+            fs::write(archive.join("README.md"), text + "\n").unwrap();
+        },
+        &["ro-crate-metadata.json:", ": contentSize = ", "README.md has "],
+    ),
+    (
+        "a missing file",
+        |archive| fs::remove_file(archive.join("rows/out/tiny/machine.toml")).unwrap(),
+        &["ro-crate-metadata.json:", "@id = rows/out/tiny/machine.toml: there is no such file"],
+    ),
+    (
+        "an extra file",
+        |archive| fs::write(archive.join("rows/extra.csv"), "").unwrap(),
+        &["rows/extra.csv", "is not listed in ro-crate-metadata.json"],
+    ),
+    (
+        "a link",
+        |archive| symlink("/etc/passwd", archive.join("rows/link")).unwrap(),
+        &["rows/link", "neither a file nor a folder"],
+    ),
+    (
+        "broken JSON",
+        |archive| {
+            let path = archive.join("ro-crate-metadata.json");
+            let text = fs::read_to_string(&path).unwrap();
+            fs::write(path, text.replacen("\"@graph\"", "\"@graph", 1)).unwrap();
+        },
+        &["ro-crate-metadata.json:", "JSON: cannot be read"],
+    ),
+    (
+        "no list",
+        |archive| fs::remove_file(archive.join("ro-crate-metadata.json")).unwrap(),
+        &["ro-crate-metadata.json", "there is no such file"],
+    ),
+    (
+        "a wrong citation",
+        |archive| edit(archive, "CITATION.cff", |text| text.replace("0097", "0098")),
+        &["CITATION.cff:8:1: orcid = "],
+    ),
+    (
+        "a wrong row",
+        |archive| edit(archive, ROWS, |text| text.replacen(",24,16,", ",wide,16,", 1)),
+        &["records.csv:2:1: width: cannot be read"],
+    ),
+    (
+        "a verdict that the rows do not give",
+        |archive| edit(archive, "claims.csv", |text| text.replacen("confirmed", "refuted", 1)),
+        &["claims.csv:3:1: verdict = refuted: claim 2: the rows give confirmed"],
+    ),
+    (
+        "a value that the rows do not give",
+        |archive| edit(archive, "claims.csv", |text| text.replacen(",confirmed,4,", ",confirmed,3,", 1)),
+        &["claims.csv:3:1: measured = 3: claim 2: the rows give 4"],
+    ),
+    (
+        "another bound",
+        |archive| edit(archive, "ledger/paper.toml", |text| text.replace("at-least = 5", "at-least = 4")),
+        &["claims.csv:4:1: verdict = refuted: claim 3: the rows give confirmed"],
+    ),
+    (
+        "a claim without a verdict",
+        |archive| edit(archive, "claims.csv", |text| text.split_inclusive('\n').take(3).collect()),
+        &["claims.csv: claim = 3: is in the ledger, and has no line here"],
+    ),
+    (
+        "a verdict without a claim",
+        |archive| edit(archive, "claims.csv", |text| format!("{text}7{}\n", &text.lines().last().unwrap()[1..])),
+        &["claims.csv:5:1: claim = 7: is not in the ledger"],
+    ),
+];
+
 /// Every fault is told with file and field, and with the line where there is one.
 #[test]
 fn a_bad_archive_is_told_by_its_fault() {
-    type Fault = (&'static str, fn(&Path), &'static [&'static str]);
-    fn edit(archive: &Path, name: &str, change: impl Fn(&str) -> String) {
-        let text = fs::read_to_string(archive.join(name)).unwrap();
-        let changed = change(&text);
-        assert_ne!(text, changed, "{name}");
-        relist(archive, name, &changed);
-    }
-    const ROWS: &str = "rows/out/tiny/records.csv";
-    const FAULTS: &[Fault] = &[
-        (
-            "a changed byte",
-            |archive| {
-                let mut bytes = fs::read(archive.join(ROWS)).unwrap();
-                let middle = bytes.len() / 2;
-                bytes[middle] ^= 1;
-                fs::write(archive.join(ROWS), bytes).unwrap();
-            },
-            &["ro-crate-metadata.json:", ": sha256 = ", ROWS],
-        ),
-        (
-            "a longer file",
-            |archive| {
-                let text = fs::read_to_string(archive.join("README.md")).unwrap();
-                fs::write(archive.join("README.md"), text + "\n").unwrap();
-            },
-            &["ro-crate-metadata.json:", ": contentSize = ", "README.md has "],
-        ),
-        (
-            "a missing file",
-            |archive| fs::remove_file(archive.join("rows/out/tiny/machine.toml")).unwrap(),
-            &["ro-crate-metadata.json:", "@id = rows/out/tiny/machine.toml: there is no such file"],
-        ),
-        (
-            "an extra file",
-            |archive| fs::write(archive.join("rows/extra.csv"), "").unwrap(),
-            &["rows/extra.csv", "is not listed in ro-crate-metadata.json"],
-        ),
-        (
-            "a link",
-            |archive| symlink("/etc/passwd", archive.join("rows/link")).unwrap(),
-            &["rows/link", "neither a file nor a folder"],
-        ),
-        (
-            "broken JSON",
-            |archive| {
-                let path = archive.join("ro-crate-metadata.json");
-                let text = fs::read_to_string(&path).unwrap();
-                fs::write(path, text.replacen("\"@graph\"", "\"@graph", 1)).unwrap();
-            },
-            &["ro-crate-metadata.json:", "JSON: cannot be read"],
-        ),
-        (
-            "no list",
-            |archive| fs::remove_file(archive.join("ro-crate-metadata.json")).unwrap(),
-            &["ro-crate-metadata.json", "there is no such file"],
-        ),
-        (
-            "a wrong citation",
-            |archive| edit(archive, "CITATION.cff", |text| text.replace("0097", "0098")),
-            &["CITATION.cff:8:1: orcid = "],
-        ),
-        (
-            "a wrong row",
-            |archive| edit(archive, ROWS, |text| text.replacen(",24,16,", ",wide,16,", 1)),
-            &["records.csv:2:1: width: cannot be read"],
-        ),
-        (
-            "a verdict that the rows do not give",
-            |archive| edit(archive, "claims.csv", |text| text.replacen("confirmed", "refuted", 1)),
-            &["claims.csv:3:1: verdict = refuted: claim 2: the rows give confirmed"],
-        ),
-        (
-            "a value that the rows do not give",
-            |archive| edit(archive, "claims.csv", |text| text.replacen(",confirmed,4,", ",confirmed,3,", 1)),
-            &["claims.csv:3:1: measured = 3: claim 2: the rows give 4"],
-        ),
-        (
-            "another bound",
-            |archive| edit(archive, "ledger/paper.toml", |text| text.replace("at-least = 5", "at-least = 4")),
-            &["claims.csv:4:1: verdict = refuted: claim 3: the rows give confirmed"],
-        ),
-        (
-            "a claim without a verdict",
-            |archive| {
-                edit(archive, "claims.csv", |text| text.lines().take(3).map(|line| format!("{line}\n")).collect())
-            },
-            &["claims.csv: claim = 3: is in the ledger, and has no line here"],
-        ),
-        (
-            "a verdict without a claim",
-            |archive| edit(archive, "claims.csv", |text| format!("{text}7{}\n", &text.lines().last().unwrap()[1..])),
-            &["claims.csv:5:1: claim = 7: is not in the ledger"],
-        ),
-    ];
     let folder = with_rows(TINY);
     finish(pathmark(folder.path(), &MAKE)).with_code(0);
     for (name, damage, told) in FAULTS {

@@ -138,8 +138,8 @@ fn pilot(settings: &Settings) -> Settings {
     if is_deterministic(&settings.spec.sampler) || settings.ranks.is_some() {
         return kind;
     }
-    let Settings { strategy, threads, decomposition, .. } = settings.clone();
-    Settings { strategy, threads, decomposition, ..kind }
+    let Settings { strategy, decomposition, threads, .. } = settings.clone();
+    Settings { strategy, decomposition, threads, ..kind }
 }
 
 impl Sweep<'_> {

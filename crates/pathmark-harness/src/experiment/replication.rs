@@ -101,7 +101,7 @@ pub struct Statements(Vec<Unjudged>);
 
 /// Rows that did not fail; and by cell the errors of the others.
 pub(super) struct Rows {
-    rows: Vec<Record>,
+    measured: Vec<Record>,
     failed: BTreeMap<String, String>,
     stopping: Stopping,
     /// Whether the limits of matrices on repetitions did not apply.
@@ -117,20 +117,20 @@ impl Rows {
     }
 
     pub(super) fn of(all: Vec<Record>, stopping: Stopping, uncapped: bool) -> Self {
-        let (rows, failed): (Vec<_>, Vec<_>) =
+        let (measured, failed): (Vec<_>, Vec<_>) =
             all.into_iter().partition(|row| row.error.is_empty() && !row.is_left_out());
         let why = |row: Record| (row.cell, if row.error.is_empty() { row.warnings } else { row.error });
-        Self { rows, failed: failed.into_iter().map(why).collect(), stopping, uncapped }
+        Self { measured, failed: failed.into_iter().map(why).collect(), stopping, uncapped }
     }
 
     fn schedules(&self, cells: &[Cell]) -> BTreeMap<ImageKey, Schedules> {
-        schedules_of(&self.rows, &if self.uncapped { BTreeSet::new() } else { capped(cells) })
+        schedules_of(&self.measured, &if self.uncapped { BTreeSet::new() } else { capped(cells) })
     }
 
     /// The exponent of RMSE against samples of each image, over its seeds.
     fn slopes(&self) -> BTreeMap<ImageKey, Measured> {
         let mut images: BTreeMap<ImageKey, BTreeMap<u32, BTreeMap<u64, f64>>> = BTreeMap::new();
-        for (row, mse) in self.rows.iter().filter_map(|row| Some((row, row.mse?))) {
+        for (row, mse) in self.measured.iter().filter_map(|row| Some((row, row.mse?))) {
             let errors = images.entry(of_curve(row.image_key())).or_default();
             errors.entry(row.spp).or_default().entry(row.seed).or_insert(mse);
         }
@@ -181,7 +181,7 @@ impl Both<'_> {
     }
 
     fn ratios(&self, pairs: &[Comparison]) -> Vec<Unjudged> {
-        let [theirs, here] = [&self.theirs, &self.here].map(|rows| times(&rows.rows));
+        let [theirs, here] = [&self.theirs, &self.here].map(|rows| times(&rows.measured));
         let processes = |times: &Cells, [what, with]: [&Cell; 2]| {
             Some(by_process(ratios_in_pairs(times.get(&what.id)?, times.get(&with.id)?)))
         };
@@ -192,16 +192,15 @@ impl Both<'_> {
             let later = processes(&here, both).filter(|own| !own.is_empty());
             let evidence = match later.filter(|_| !both.into_iter().any(|cell| (self.absent)(cell).is_some())) {
                 None => Evidence::lacking(ratio, self.why_not(|cell| both.iter().any(|own| own.id == cell.id))),
-                Some(own) => match log_ratio(&own) {
-                    Some(later) => {
+                Some(own) => {
+                    if let Some(later) = log_ratio(&own) {
                         Evidence::Values { theirs: earlier, here: later, limit: libm::log(1.0 + self.share) }
-                    }
-                    None => {
+                    } else {
                         let more = FEWEST_PROCESSES.checked_sub(own.len()).filter(|more| *more > 0);
                         let verdict = Reproduction::CannotTell(more);
                         Evidence::Known { theirs: ratio, verdict, note: String::new() }
                     }
-                },
+                }
             };
             Some(self.unjudged(Kind::Ratio, told(both), evidence))
         };
@@ -258,7 +257,7 @@ impl Both<'_> {
         let [theirs, here] = [&self.theirs, &self.here].map(|rows| {
             let mut images = ImageBits::default();
             // A time limit ends each run at other samples.
-            images.add(rows.rows.iter().filter(|row| row.time_limit_s.is_none()));
+            images.add(rows.measured.iter().filter(|row| row.time_limit_s.is_none()));
             images
         });
         let of_image = |(image, bits): (&ImageKey, SameBits)| {
@@ -283,7 +282,7 @@ impl Both<'_> {
         let points = self.cells.iter().flat_map(|cell| &cell.points);
         let known: HashSet<&str> = points.map(|point| point.id.as_str()).collect();
         let mut others: BTreeMap<String, BTreeSet<&str>> = BTreeMap::new();
-        for row in self.theirs.rows.iter().filter(|row| !known.contains(row.cell.as_str())) {
+        for row in self.theirs.measured.iter().filter(|row| !known.contains(row.cell.as_str())) {
             let why = more_than_here(row.threads, "thread");
             let why = why.unwrap_or_else(|| "this version of the program has no such cell".to_string());
             others.entry(why).or_default().insert(&row.cell);
@@ -357,8 +356,11 @@ impl Replication {
     }
 }
 
+/// A fact of a machine and how it is told.
+type Fact = (&'static str, fn(&Machine) -> String);
+
 fn side_by_side(machines: [&[Machine]; 2]) -> Vec<MachineFact> {
-    let facts: [(&str, fn(&Machine) -> String); 9] = [
+    let facts: [Fact; 9] = [
         ("processor", |own| own.cpu.clone()),
         ("model", |own| own.cpu_model.clone()),
         ("instruction sets", |own| own.cpu_features.clone()),
@@ -369,7 +371,7 @@ fn side_by_side(machines: [&[Machine]; 2]) -> Vec<MachineFact> {
         ("compiler", |own| [own.rustc.as_str(), own.rustflags.as_str()].join(" ").trim().to_string()),
         ("Pathmark's sources", |own| format!("{}{}", own.commit, if own.dirty { " with changes" } else { "" })),
     ];
-    let fact = |(name, of): (&str, fn(&Machine) -> String)| {
+    let fact = |(name, of): Fact| {
         let [theirs, here] = machines.map(|all| {
             let values: BTreeSet<String> = all.iter().map(of).collect();
             values.into_iter().collect::<Vec<String>>().join("; ")

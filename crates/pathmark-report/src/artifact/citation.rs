@@ -140,9 +140,9 @@ impl Citation {
                 continue;
             }
             let content = content.strip_prefix("- ").unwrap_or(content).trim_start();
-            let text_of = |field: &str, value: &str| {
+            let text_of = |field: &str, value: &str| -> Result<String> {
                 let problem = "is not a text on one line, and we read no other YAML here";
-                scalar(value).ok_or_else(|| refused(field, value, problem))
+                scalar(value).ok_or_else(|| refused(field, value, problem).into())
             };
             if is_nested && key == "license" {
                 found.licenses.push(text_of("license", content)?);

@@ -64,7 +64,7 @@ pub(super) fn container(
     }
     let again =
         if can_measure { format!("#   podman run --rm artifact sh {MEASURE} /tmp/again\n") } else { String::new() };
-    let notes: String = notes.iter().map(|note| format!("{note}\n")).collect();
+    let notes: String = notes.iter().flat_map(|note| [note.as_str(), "\n"]).collect();
     let commit = if is_known { commit.as_str() } else { "HEAD" };
     let rust = rustc.split_whitespace().nth(1).unwrap_or("stable");
     let features = features.iter().map(String::as_str).collect::<Vec<&str>>().join(",");
