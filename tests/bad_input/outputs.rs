@@ -1,10 +1,9 @@
 //! Outputs that cannot be written are refused before anything is rendered.
 
 use super::program::{finish, in_memory, pathmark, wait};
-use super::{refused, snapshot};
-use std::fs::{self, File};
+use super::refused;
+use std::fs;
 use std::io::Read;
-use std::process::Stdio;
 
 /// Takes longer than the time limit, so a refusal after the render would fail the test.
 const LONG: [&str; 4] = ["render", "cornell", "--spp", "4000000"];
@@ -205,6 +204,10 @@ fn a_reader_that_has_seen_enough_is_no_failure() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_behind_standard_output_is_the_systems() {
+    use super::snapshot;
+    use std::fs::File;
+    use std::process::Stdio;
+
     let folder = in_memory();
     let cases: [&[&str]; 3] = [
         &["list"],

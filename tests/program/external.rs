@@ -8,6 +8,7 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::process::Command;
 use std::time::Duration;
 
 /// Runs the small experiment with one more table. Returns the rows of `other` and the finished program.
@@ -188,8 +189,14 @@ fn a_command_without_a_place_for_the_seed_is_refused() {
 
 /// Whether a process runs; an ended process that nobody has waited for does not.
 pub(crate) fn runs(process: &str) -> bool {
-    let status = std::fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
-    status.rsplit_once(") ").is_some_and(|(_, state)| !state.starts_with('Z'))
+    if cfg!(target_os = "linux") {
+        let status = std::fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
+        return status.rsplit_once(") ").is_some_and(|(_, state)| !state.starts_with('Z'));
+    }
+    // Other systems have no /proc, and always have `ps`, which small Linux systems lack.
+    let told = Command::new("ps").args(["-o", "stat=", "-p", process]).output().unwrap();
+    let state = String::from_utf8_lossy(&told.stdout);
+    !state.trim().is_empty() && !state.starts_with('Z')
 }
 
 /// Neither the other program nor its children outlive the sweep or the cell, however these end.

@@ -15,6 +15,8 @@ mod experiment;
 mod external;
 mod faults;
 mod inspection;
+// It finds the processes of a launcher in /proc.
+#[cfg(target_os = "linux")]
 mod killed_ranks;
 mod ledgers;
 mod lost_cells;

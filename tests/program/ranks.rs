@@ -184,7 +184,9 @@ fn options_that_ranks_lack_are_refused() {
     refused(&["--ranks", "master-worker"], 2, &["ranks", "master-worker", "2 ranks"]);
     refused(&["--ranks", "guided", "--mpi", "/etc/passwd"], 2, &["mpi", "/etc/passwd"]);
     refused(&["--ranks", "guided", "--mpi", "/nowhere/libmpi.so"], 2, &["mpi", "/nowhere/libmpi.so"]);
-    refused(&["--ranks", "guided", "--mpi", "libc.so.6"], 2, &["mpi", "libc.so.6", "MPI_Init_thread"]);
+    // Apple's systems have the C library under another name.
+    let c_library = if cfg!(target_vendor = "apple") { "libSystem.B.dylib" } else { "libc.so.6" };
+    refused(&["--ranks", "guided", "--mpi", c_library], 2, &["mpi", c_library, "MPI_Init_thread"]);
     refused(&["--mpi", "auto"], 2, &["--ranks"]);
     refused(&["--ranks", "guided", "-o", "x", "--shard", "1/2"], 2, &["--ranks", "--shard"]);
     refused(&["--ranks", "guided", "-o", "x.png", "--adaptive"], 2, &["--ranks", "--adaptive"]);

@@ -42,8 +42,14 @@ const TYPE_CPU: u64 = 2;
 const EXACT_ENOUGH: u64 = 1 | 2 | 4;
 
 /// The loader's functions, or the reason why there are none. The library stays open.
-static LOADER: LazyLock<std::result::Result<Functions, String>> =
-    LazyLock::new(|| open(&["libOpenCL.so.1", "libOpenCL.so"]).and_then(Functions::of));
+static LOADER: LazyLock<std::result::Result<Functions, String>> = LazyLock::new(|| open(NAMES).and_then(Functions::of));
+
+/// Apple's systems have it as a framework.
+const NAMES: &[&str] = if cfg!(target_vendor = "apple") {
+    &["/System/Library/Frameworks/OpenCL.framework/OpenCL"]
+} else {
+    &["libOpenCL.so.1", "libOpenCL.so"]
+};
 
 /// Held while looking for devices, compiling, or launching a kernel for the first time, which is when `PoCL` compiles
 /// it: version 3.1 crashes if two threads do so at the same time.

@@ -13,8 +13,16 @@ use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 
 /// Names of libraries. The launcher's library is tried first.
+#[cfg(not(target_vendor = "apple"))]
 const OPEN_MPI: &[&str] = &["libmpi.so.40"];
+#[cfg(not(target_vendor = "apple"))]
 const MPICH: &[&str] = &["libmpich.so.12", "libmpi.so.12", "libmpi_abi.so.1", "libmpi_abi.so.0"];
+
+// Apple's systems write the version before the extension, and do not search the folder of the package manager.
+#[cfg(target_vendor = "apple")]
+const OPEN_MPI: &[&str] = &["libmpi.40.dylib", "/opt/homebrew/lib/libmpi.40.dylib"];
+#[cfg(target_vendor = "apple")]
+const MPICH: &[&str] = &["libmpi.12.dylib", "/opt/homebrew/lib/libmpi.12.dylib", "libmpi_abi.0.dylib"];
 
 /// An open library.
 pub(crate) struct Symbols {

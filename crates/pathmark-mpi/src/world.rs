@@ -205,6 +205,8 @@ mod tests {
         let refused = |path: &str| World::begin(Some(Path::new(path))).err().unwrap().to_string();
         assert!(refused("/etc/passwd").contains("/etc/passwd"));
         assert!(refused("/nowhere/libmpi.so").contains("/nowhere/libmpi.so"));
-        assert!(refused("libc.so.6").contains("MPI_Init_thread"));
+        // Apple's systems have the C library under another name.
+        let c_library = if cfg!(target_vendor = "apple") { "libSystem.B.dylib" } else { "libc.so.6" };
+        assert!(refused(c_library).contains("MPI_Init_thread"));
     }
 }

@@ -60,6 +60,7 @@ fn encode(image: &Image, _: &[Note]) -> Result<Vec<u8>> {
         if !pixel.iter().all(|value| (0.0..TOO_LARGE).contains(value)) {
             return Err(bad_pixel(image, index, "does not fit in an hdr picture, which stores 0 to 1.7e38"));
         }
+        // The encoder takes numbers in the byte order of this machine.
         samples.extend(round(pixel).into_iter().flat_map(f32::to_ne_bytes));
     }
     let mut bytes = Vec::new();

@@ -1,8 +1,8 @@
 //! The layout of a machine as a table: for `pathmark machine` and the file beside the rows of a sweep.
 
-use super::affinity::allowed_cpus;
 use super::cpu_list::{cpu_list, parse_cpu_list};
 use super::quota::cpu_quota;
+use super::system::allowed_cpus;
 use super::topology::{Cpu, FULL, Topology};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

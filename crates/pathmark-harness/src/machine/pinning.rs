@@ -1,7 +1,7 @@
 //! Pinning: which processor each worker may run on.
 
-use super::affinity::allowed_cpus;
 use super::cpu_list::{cpu_list, parse_cpu_list};
+use super::system::allowed_cpus;
 use super::topology::{Cpu, Topology};
 use crate::error::{InputError, Result};
 use serde::{Deserialize, Serialize};

@@ -26,7 +26,9 @@ mod aligned;
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
-#[cfg(target_arch = "x86_64")]
+#[cfg(target_arch = "aarch64")]
+mod neon;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod pair;
 mod portable;
 mod table;
@@ -266,6 +268,8 @@ levels! {
     Avx512: "avx512", "AVX-512 (F, DQ, VL, BW): 512-bit registers, two at a time" => avx512;
     #[cfg(target_arch = "x86_64")]
     Avx2: "avx2", "AVX2 and FMA: 256-bit registers, two at a time" => avx2;
+    #[cfg(target_arch = "aarch64")]
+    Neon: "neon", "NEON: 128-bit registers, four at a time" => neon;
     Baseline: "baseline", "small arrays that the compiler vectorises: SSE2 or NEON" => portable;
 }
 

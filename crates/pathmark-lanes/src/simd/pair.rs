@@ -104,13 +104,23 @@ impl<M: HalfMask> Mask for Pair<M> {
     }
     #[inline(always)]
     fn bits(self) -> u32 {
-        self.0.bits() | self.1.bits() << M::LANES
+        M::bits_of_both(self.0, self.1)
     }
 }
 
 /// A mask with a fixed number of lanes.
 pub(super) trait HalfMask: Mask {
     const LANES: u32;
+    /// The bits of the mask of both vectors.
+    #[inline(always)]
+    fn bits_of_both(lower: Self, upper: Self) -> u32 {
+        lower.bits() | upper.bits() << Self::LANES
+    }
+}
+
+/// A pair is half of a pair of pairs.
+impl<M: HalfMask> HalfMask for Pair<M> {
+    const LANES: u32 = 2 * M::LANES;
 }
 
 /// A mask for the lanes of two registers of words.

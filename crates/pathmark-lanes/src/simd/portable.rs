@@ -12,8 +12,8 @@ pub(super) fn is_available() -> bool {
     true
 }
 
-/// x86 processors without a better instruction set are older than 2013.
-pub(super) const IS_FALLBACK: bool = cfg!(target_arch = "x86_64");
+/// x86 processors without a better instruction set are older than 2013, and every ARM processor has NEON.
+pub(super) const IS_FALLBACK: bool = cfg!(any(target_arch = "x86_64", target_arch = "aarch64"));
 
 /// Runs `work` with this instruction set.
 pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
