@@ -40,11 +40,19 @@ pub(crate) struct Arguments {
     /// Resume a replication that was stopped; if it was finished, judge its rows again
     #[arg(long)]
     resume: bool,
+    #[command(flatten)]
+    form: Form,
+}
+
+/// The form of what is printed.
+#[derive(Args)]
+#[group(multiple = false)]
+struct Form {
     /// Print the statements as an array of objects
     #[arg(long)]
     json: bool,
     /// Print the text of REPLICATION.md
-    #[arg(long, conflicts_with = "json")]
+    #[arg(long)]
     markdown: bool,
 }
 
@@ -110,9 +118,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     let is_wrong = |own: &&[String; 8]| own[6] == Reproduction::NotReproduced.name();
     let rows: Vec<[String; 8]> = found.statements.iter().map(cells).collect();
     let wrong: Vec<&[String; 8]> = rows.iter().filter(is_wrong).collect();
-    if arguments.json {
+    if arguments.form.json {
         print_json(&found.statements)?;
-    } else if arguments.markdown {
+    } else if arguments.form.markdown {
         print(words.trim_end())?;
     } else {
         let lines = wrong.iter().map(|[experiment, _, says, theirs, here, _, verdict, note]| {
@@ -125,7 +133,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     }
     // Verdicts are told before a page that could not be written.
     let page = page?;
-    if !arguments.json && !arguments.markdown {
+    if !arguments.form.json && !arguments.form.markdown {
         print(&format!("statements in {}, report in {}", text.display(), page.display()))?;
     }
     match wrong.len() {

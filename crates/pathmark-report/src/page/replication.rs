@@ -65,7 +65,7 @@ pub fn rule(found: &Replication) -> String {
     )
 }
 
-/// What this machine lacks, each with the number of statements; `None` if it lacks nothing.
+/// The things that this machine lacks, each with the number of statements; `None` if it lacks nothing.
 pub fn other_hardware(found: &Replication) -> Option<String> {
     let mut reasons: BTreeMap<&str, usize> = BTreeMap::new();
     for own in &found.statements {
