@@ -3,7 +3,7 @@
 //! Of the Citation File Format we read the part that such files use: texts on one line, and lists of authors and licences.
 //! Any other YAML in these fields is refused with its line.
 
-use crate::error::{InputError, Result};
+use crate::error::{Error, InputError, Result};
 use crate::input::read_text;
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -142,7 +142,7 @@ impl Citation {
             let content = content.strip_prefix("- ").unwrap_or(content).trim_start();
             let text_of = |field: &str, value: &str| {
                 let problem = "is not a text on one line, and we read no other YAML here";
-                scalar(value).ok_or_else(|| refused(field, value, problem))
+                scalar(value).ok_or_else(|| Error::from(refused(field, value, problem)))
             };
             if is_nested && key == "license" {
                 found.licenses.push(text_of("license", content)?);

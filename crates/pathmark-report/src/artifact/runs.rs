@@ -133,7 +133,9 @@ mod tests {
     fn names_are_simple_and_unique() {
         let folder = tempfile::tempdir().unwrap();
         let paths = ["x/out", "y/out", "x/my rows", "x/..."].map(|name| folder.path().join(name));
-        paths.iter().for_each(|path| std::fs::create_dir_all(path).unwrap());
+        for path in &paths {
+            std::fs::create_dir_all(path).unwrap();
+        }
         let runs = runs_of(&[paths.to_vec(), vec![folder.path().join("x/../x/out")]].concat()).unwrap();
         let names: Vec<&str> = runs.iter().map(|run| run.name.as_str()).collect();
         assert_eq!(names, ["out", "out-2", "my-rows", "rows"]);
