@@ -54,13 +54,13 @@ pub(super) fn container(
     let is_known = commit != "unknown";
     let mut notes = Vec::new();
     if !is_known {
-        notes.push("# The program did not know its commit: give it with --build-arg COMMIT=...".to_string());
+        notes.push("# The program did not know its commit: give it with --build-arg COMMIT=...\n".to_string());
     } else if *dirty {
-        notes.push("# The program had uncommitted changes, which this build lacks.".to_string());
+        notes.push("# The program had uncommitted changes, which this build lacks.\n".to_string());
     }
     let others: Vec<&str> = measured.iter().map(String::as_str).filter(|other| other != commit).collect();
     if !others.is_empty() {
-        notes.push(format!("# COMMIT computed the verdicts; rows were measured at {}.", others.join(", ")));
+        notes.push(format!("# COMMIT computed the verdicts; rows were measured at {}.\n", others.join(", ")));
     }
     let again =
         if can_measure { format!("#   podman run --rm artifact sh {MEASURE} /tmp/again\n") } else { String::new() };
