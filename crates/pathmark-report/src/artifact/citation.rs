@@ -3,7 +3,7 @@
 //! Of the Citation File Format we read the part that such files use: texts on one line, and lists of authors and licences.
 //! Any other YAML in these fields is refused with its line.
 
-use crate::error::{Error, InputError, Result};
+use crate::error::{InputError, Result};
 use crate::input::read_text;
 use std::collections::BTreeSet;
 use std::fmt::Write;

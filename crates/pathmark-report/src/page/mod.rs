@@ -14,6 +14,7 @@ mod notes;
 mod photo;
 mod provenance;
 pub mod replication;
+mod sources;
 pub(crate) mod table;
 
 use crate::error::{Error, Result};
