@@ -195,7 +195,7 @@ fn relist(archive: &Path, name: &str, text: &str) {
     fs::write(path, format!("{list:#}\n")).unwrap();
 }
 
-/// What is done to an archive, and what its check says.
+/// A name, the damage to an archive, and the words of its check.
 type Fault = (&'static str, fn(&Path), &'static [&'static str]);
 
 /// Changes a file and its line in the list, so that only its content is wrong.
