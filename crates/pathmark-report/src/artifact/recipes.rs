@@ -62,9 +62,8 @@ pub(super) fn container(
     if !others.is_empty() {
         notes.push(format!("# COMMIT computed the verdicts; rows were measured at {}.\n", others.join(", ")));
     }
-    let again =
-        if can_measure { format!("#   podman run --rm artifact sh {MEASURE} /tmp/again\n") } else { String::new() };
-    let notes: String = notes.iter().flat_map(|note| [note.as_str(), "\n"]).collect();
+    let again = if can_measure { format!("#   podman run --rm artifact sh {MEASURE}\n") } else { String::new() };
+    let notes = notes.concat();
     let commit = if is_known { commit.as_str() } else { "HEAD" };
     let rust = rustc.split_whitespace().nth(1).unwrap_or("stable");
     let features = features.iter().map(String::as_str).collect::<Vec<&str>>().join(",");
