@@ -13,7 +13,7 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 
 /// Three claims on the rows of [`TINY`], which has 4 samples per pixel: one is true, one is false, and one has no rows.
-fn ledger() -> String {
+pub(crate) fn ledger() -> String {
     let claim = |id: u32, rest: &str| {
         format!(
             "\n[[claim]]\nid = {id}\nquote = \"q\"\nplace = \"page 1\"\nreported = \"4\"\nclaim = \"Claim {id}.\"\n\
@@ -259,7 +259,7 @@ const FAULTS: &[Fault] = &[
     (
         "a wrong citation",
         |archive| edit(archive, "CITATION.cff", |text| text.replace("0097", "0098")),
-        &["CITATION.cff:8:1: orcid = "],
+        &["CITATION.cff:8:12: orcid = "],
     ),
     (
         "a wrong row",
@@ -317,7 +317,7 @@ fn wrong_input_is_refused_and_leaves_no_file() {
     fs::create_dir(folder.path().join("full")).unwrap();
     fs::write(folder.path().join("full/notes.txt"), "mine").unwrap();
     fs::create_dir(folder.path().join("empty")).unwrap();
-    fs::write(folder.path().join("CITATION.cff"), "cff-version: 1.2.0\nmessage: m\ntitle: |\n  T\n").unwrap();
+    fs::write(folder.path().join("CITATION.cff"), "cff-version: 1.2.0\nmessage: m\ntitle: [T]\n").unwrap();
     let names = ["--title", "T", "--author", "A", "--license", "MIT"];
     let before = snapshot(folder.path());
     for (arguments, told) in [
@@ -340,6 +340,6 @@ fn wrong_input_is_refused_and_leaves_no_file() {
     }
     // The file of the current folder has YAML that is not read, unless options replace it.
     let error = finish(pathmark(folder.path(), &["artifact", "new", "--ledger", "paper.toml"])).with_code(2).err;
-    assert!(error.contains("CITATION.cff:3:1: title = |: "), "{error}");
+    assert!(error.contains("CITATION.cff:3:8: title: is no text"), "{error}");
     assert_untouched(&before, &snapshot(folder.path()));
 }

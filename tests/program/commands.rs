@@ -1,10 +1,13 @@
-//! The commands in the documents run as printed there.
+//! The commands in the documents run as printed there, with smaller images.
 
 use crate::experiment::TINY;
-use crate::program::{finish, in_memory, pathmark};
-use std::fs;
-use std::path::Path;
+use crate::program::{Finished, finish, in_memory, pathmark};
+use crate::ranks::{has_launcher, launcher_named};
+use std::fs::{self, Permissions};
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+use tempfile::TempDir;
 
 /// The fenced blocks of a document in order, each with its language.
 fn blocks(text: &str) -> Vec<(&str, &str)> {
@@ -12,6 +15,93 @@ fn blocks(text: &str) -> Vec<(&str, &str)> {
     parts.next();
     // After each opening fence come the language and the block; after each closing fence, the text between blocks.
     parts.step_by(2).filter_map(|part| part.split_once('\n')).collect()
+}
+
+/// A reader with a shell, whose `pathmark` renders small images, and whose folder is `here`.
+struct Reader {
+    here: TempDir,
+    /// The first folder of the path; not in memory, where programs may not run.
+    programs: TempDir,
+}
+
+/// The program `pathmark` of a reader. `doctor` is left out, because it measures for twenty seconds at any size.
+/// `simulate` does not first predict this machine, which takes fifteen seconds of renders; other tests do so. `diff` may
+/// find a build slower than its copy, because renders are so short here.
+const SMALL: &str = r#"#!/bin/sh
+has() { case " $words " in *" $1 "*) ;; *) return 1 ;; esac; }
+words=$*
+case $1 in
+    doctor) exit ;;
+    run) set -- "$@" RUN ;;
+    render) has --size || set -- "$@" --size RENDER ;;
+    inspect) ! has --pixel || has --size || set -- "$@" --size RENDER ;;
+    price) has --size || set -- "$@" --size 32x24 ;;
+    simulate) set -- "$@" --no-check ;;
+    bursts) set -- "$@" --regions 2 --rounds 1 --processes 3 ;;
+    diff) 'PROGRAM' "$@" || [ $? = 1 ]; exit ;;
+esac
+exec 'PROGRAM' "$@"
+"#;
+
+/// Sizes and durations of the documents, and smaller ones.
+const SMALLER: [(&str, &str); 8] = [
+    ("512x384", "32x24"),
+    ("256x192", "32x24"),
+    ("160x120", "40x30"),
+    ("64x48", "16x12"),
+    ("--shard 1/4", "--shard 1/2"),
+    ("--shard 2/4", "--shard 2/2"),
+    ("--max-time 2min", "--max-time 1s"),
+    ("--max-time 10s", "--max-time 1s"),
+];
+
+impl Reader {
+    /// `run`: more arguments of each sweep. `render`: the size of an image that has none.
+    fn new(run: &str, render: &str) -> Self {
+        let (here, programs) = (in_memory(), tempfile::tempdir().unwrap());
+        let program = assert_cmd::cargo::cargo_bin!("pathmark").display().to_string();
+        let small = SMALL.replace("PROGRAM", &program).replace("RUN", run).replace("RENDER", render);
+        let path = programs.path().join("pathmark");
+        fs::write(&path, small).unwrap();
+        fs::set_permissions(&path, Permissions::from_mode(0o755)).unwrap();
+        Self { here, programs }
+    }
+
+    fn path(&self) -> &Path {
+        self.here.path()
+    }
+
+    /// Runs the lines as a script that ends at the first error.
+    fn run(&self, lines: &str) -> Finished {
+        let small = SMALLER.iter().fold(lines.to_owned(), |text, (from, to)| text.replace(from, to));
+        let mut command = launcher_named("sh", self.path());
+        let path = std::env::var("PATH").unwrap_or_default();
+        command.args(["-e", "-c", &small]).env("PATH", format!("{}:{path}", self.programs.path().display()));
+        finish(command).with_code(0)
+    }
+
+    /// Runs all commands of a document, and writes its definitions. Returns the number of commands.
+    fn follow(&self, text: &str) -> usize {
+        let mut commands = 0;
+        for (language, block) in blocks(text) {
+            match language {
+                "toml" => {
+                    let name = block.lines().next().and_then(|line| line.strip_prefix("# ")).expect("a file's name");
+                    fs::write(self.path().join(name), block).unwrap();
+                }
+                "sh" => {
+                    self.run(block);
+                    commands += count(block);
+                }
+                other => panic!("a block in {other:?}"),
+            }
+        }
+        commands
+    }
+}
+
+fn count(block: &str) -> usize {
+    block.lines().filter(|line| line.starts_with("pathmark ") || line.starts_with("mpiexec ")).count()
 }
 
 /// The README's commands in a small size, without those that take an hour, need a feature or run in other tests.
@@ -27,31 +117,86 @@ fn the_commands_of_the_readme_run() {
         "pathmark run granularity --baseline",
         "pathmark VERB",
     ];
-    let folder = in_memory();
-    let mut commands = 0;
+    let reader = Reader::new("--set size=32x24 --repetitions 1", "128x201");
     let text = include_str!("../../README.md");
-    for line in blocks(text).into_iter().filter(|(language, _)| *language == "sh").flat_map(|(_, block)| block.lines())
-    {
-        let (command, _) = line.split_once('#').unwrap_or((line, ""));
-        if !command.starts_with("pathmark ") || ELSEWHERE.iter().any(|own| command.starts_with(own)) {
+    let lines = blocks(text).into_iter().filter(|(language, _)| *language == "sh").flat_map(|(_, block)| block.lines());
+    let own = lines.filter(|line| line.starts_with("pathmark ") && !ELSEWHERE.iter().any(|own| line.starts_with(own)));
+    let script: Vec<&str> = own.collect();
+    reader.run(&script.join("\n"));
+    assert!(script.len() > 10, "{script:?}");
+}
+
+/// Manuals and notes. Each has a folder with rows and a ledger, and another build beside it.
+#[test]
+fn every_command_of_manuals_and_notes_runs() {
+    // The tutorial has a test of its own, and so have the commands for the class (`lab.md` here, `rubric.md` in
+    // tests/grade). Those of `external.md` install another program.
+    const ELSEWHERE: [&str; 4] = ["tutorial.md", "lab.md", "rubric.md", "external.md"];
+    let mut commands = 0;
+    for page in pages() {
+        let (text, name) = (fs::read_to_string(&page).unwrap(), page.file_name().unwrap().to_str().unwrap());
+        let shell: Vec<&str> = blocks(&text).into_iter().filter(|(own, _)| *own == "sh").map(|(_, b)| b).collect();
+        if ELSEWHERE.contains(&name) || shell.is_empty() {
             continue;
         }
-        let mut small = command.replace("256x192", "32x24");
-        let more = match command.split_whitespace().nth(1) {
-            Some("run") => " --set size=32x24 --repetitions 1",
-            // The check predicts this machine first, which takes fifteen seconds of renders; other tests cover it.
-            Some("simulate") => " --no-check",
-            Some("price") => " --size 32x24",
-            Some("render") if !command.contains("--size") => " --size 128x201",
-            Some("inspect") if command.contains("--pixel") => " --size 128x201",
-            _ => "",
-        };
-        small += more;
-        let words: Vec<&str> = small.split_whitespace().collect();
-        finish(pathmark(folder.path(), &words[1..])).with_code(0);
-        commands += 1;
+        let reader = Reader::new("--set size=16x12", "64x48");
+        let old = reader.programs.path().join("old/target/release");
+        fs::create_dir_all(&old).unwrap();
+        fs::copy(reader.programs.path().join("pathmark"), old.join("pathmark")).unwrap();
+        let folder = reader.programs.path().display();
+        if name == "artifacts.md" {
+            fs::write(reader.path().join("tiny.toml"), TINY).unwrap();
+            fs::write(reader.path().join("paper.toml"), crate::artifact::ledger()).unwrap();
+            reader.run("pathmark run tiny.toml");
+        }
+        for block in shell {
+            // The notes on repetitions have a table of these.
+            let block = block.replace("OPTIONS", "--repetitions 2").replace("../old/", &format!("{folder}/old/"));
+            if !block.contains("mpiexec") || has_launcher() {
+                reader.run(&block.replace("--nodes 2..64", "--nodes 2..4"));
+            }
+            commands += count(&block);
+        }
     }
-    assert!(commands > 10, "{commands} commands");
+    assert!(commands > 18, "{commands} commands");
+}
+
+fn pages() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = ["docs", "docs/course", "docs/notes"].map(|folder| fs::read_dir(root.join(folder)).unwrap());
+    let mut pages: Vec<PathBuf> = folders.into_iter().flatten().map(|entry| entry.unwrap().path()).collect();
+    pages.retain(|path| path.extension().is_some_and(|end| end == "md"));
+    pages.sort();
+    pages
+}
+
+/// Commands within sentences: their verb, options and values are the program's. None of them runs: some take hours.
+#[test]
+fn the_commands_within_sentences_are_understood() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let (folder, mut commands) = (in_memory(), 0);
+    let others = ["README.md", "results/README.md", "examples/ledgers/README.md"].map(|name| root.join(name));
+    let known = finish(pathmark(folder.path(), &["list", "experiments"])).with_code(0).out;
+    for page in pages().into_iter().chain(others) {
+        let text = fs::read_to_string(&page).unwrap();
+        for command in text.split('`').filter(|command| command.starts_with("pathmark ")) {
+            // A single letter stands for a number.
+            let is_number = |word: &str| word.len() == 1 && word.chars().all(|char| char.is_ascii_uppercase());
+            let words = command.split_whitespace().skip(1).map(|word| if is_number(word) { "1" } else { word });
+            let words: Vec<&str> = words.collect();
+            if words.iter().any(|word| ["VERB", "KIND"].contains(word)) || words[0].starts_with('-') {
+                continue;
+            }
+            let told = finish(pathmark(folder.path(), &[&words[..], &["--help"]].concat()));
+            assert_eq!(told.code, Some(0), "{}: {command}\n{}", page.display(), told.err);
+            if let ["run", experiment, ..] = words[..] {
+                let is_known = known.lines().any(|line| line.split_whitespace().next() == Some(experiment));
+                assert!(is_known || experiment == "NAME", "{}: {command}", page.display());
+            }
+            commands += 1;
+        }
+    }
+    assert!(commands > 50, "{commands} commands");
 }
 
 /// The shortest ledger of the manual measures its number.
@@ -71,60 +216,27 @@ fn the_ledger_of_the_manual_gives_a_number() {
     assert!(speedup > 0.0 && measured.contains(" to "), "{told}");
 }
 
-/// Runs the commands of a document as printed, except that images are small and the simulation skips its check of this
-/// machine. Returns their number.
-fn run_all(folder: &Path, text: &str) -> usize {
-    let mut commands = 0;
-    for (language, block) in blocks(text) {
-        match language {
-            "toml" => {
-                let name = block.lines().next().and_then(|line| line.strip_prefix("# ")).expect("a file's name");
-                fs::write(folder.join(name), block).unwrap();
-            }
-            "sh" => {
-                for line in block.lines() {
-                    let small = line.replace("160x120", "40x30").replace("64x48", "16x12");
-                    let mut words: Vec<&str> = small.split_whitespace().collect();
-                    assert_eq!(words[0], "pathmark", "{line}");
-                    match words[1] {
-                        "run" => words.extend(["--set", "size=16x12"]),
-                        "render" if !small.contains("--size") => words.extend(["--size", "64x48"]),
-                        "simulate" => words.push("--no-check"),
-                        // It measures for twenty seconds, whatever the size.
-                        "doctor" => continue,
-                        _ => (),
-                    }
-                    finish(pathmark(folder, &words[1..])).with_code(0);
-                    commands += 1;
-                }
-            }
-            other => panic!("a block in {other:?}"),
-        }
-    }
-    commands
-}
-
 #[test]
 fn every_command_of_the_lab_sheet_runs() {
-    let folder = in_memory();
-    assert!(run_all(folder.path(), include_str!("../../docs/course/lab.md")) > 8);
+    let reader = Reader::new("--set size=16x12", "64x48");
+    assert!(reader.follow(include_str!("../../docs/course/lab.md")) > 8);
     for made in ["a.svg", "out/report.html", "out/lab/figures/losses.svg", "sizes/report.html"] {
-        assert!(folder.path().join(made).is_file(), "{made}");
+        assert!(reader.path().join(made).is_file(), "{made}");
     }
 }
 
 #[test]
 fn every_command_of_the_tutorial_runs() {
-    let folder = in_memory();
-    let commands = run_all(folder.path(), include_str!("../../docs/tutorial.md"));
+    let reader = Reader::new("--set size=16x12", "64x48");
+    let commands = reader.follow(include_str!("../../docs/tutorial.md"));
     assert!(commands > 12, "{commands} commands");
     let made =
         ["blocks.svg", "out/report.html", "out/speedup/figures/speedup.svg", "draft.tex", "elsewhere/report.html"];
     for made in made {
-        assert!(folder.path().join(made).is_file(), "{made}");
+        assert!(reader.path().join(made).is_file(), "{made}");
     }
     // The first three images of the tutorial are the same.
-    let image = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    let image = |name: &str| fs::read(reader.path().join(name)).unwrap();
     assert!(image("box.png") == image("one.png") && image("one.png") == image("four.png"));
 }
 

@@ -93,11 +93,26 @@ fn ratios_and_images_are_judged_and_seconds_are_not() {
     assert_eq!(orders(&told), [("reproduced", 1.0, 1.0)], "{told:?}");
     let page = fs::read_to_string(folder.path().join("here/report.html")).unwrap();
     assert!(page.contains("Replication of theirs") && page.contains("The machines side by side"), "{page}");
+    // What differs is measured a second time: only there is it as theirs.
+    let (first, second) = (folder.path().join("here/tiny"), folder.path().join("here/again/tiny"));
+    let _ = fs::remove_dir_all(&second);
+    fs::create_dir_all(&second).unwrap();
+    for file in fs::read_dir(&first).unwrap().map(|file| file.unwrap().path()).filter(|file| file.is_file()) {
+        fs::copy(&file, second.join(file.file_name().unwrap())).unwrap();
+    }
+    let again = second.join("records.csv");
     bent(&here, "static-blocks", 0.5, even);
+    let told = judged(folder.path(), &[], 0);
+    assert_eq!(verdicts(&told), ["cannot-tell", "reproduced"], "{told:?}");
+    let note = told[0]["note"].as_str().unwrap();
+    assert!(note.starts_with("a second measurement here does not show it (1.5"), "{told:?}");
+    bent(&again, "static-blocks", 0.5, even);
     let told = judged(folder.path(), &[], 1);
     assert_eq!(verdicts(&told), ["not-reproduced", "reproduced"], "{told:?}");
     assert_eq!(orders(&told), [("not-reproduced", 1.0, 0.0)], "{told:?}");
-    bent(&here, "static-blocks", 1.2 * 1.5, even);
+    for rows in [&here, &again] {
+        bent(rows, "static-blocks", 1.2 * 1.5, even);
+    }
     assert_eq!(verdicts(&judged(folder.path(), &[], 1)), ["not-reproduced", "reproduced"]);
     assert_eq!(verdicts(&judged(folder.path(), &["--margin", "30%"], 0)), ["reproduced", "reproduced"]);
     bent(&here, "static-blocks", 1.5, |index| 1.0 + 0.3 * (index % 5) as f64);

@@ -5,8 +5,8 @@ use crate::analysis::speedup::serial_fraction;
 use crate::plot::number::{between, short};
 use crate::prelude::*;
 use crate::simulate::{
-    Agreement, BusyRatio, Contender, DISTURBED, Forecast, Observed, Prediction, WorkInflation, agreement, busy_ratios,
-    predict,
+    BusyRatio, Contender, DISTURBED, Forecast, Observed, Prediction, RelativeErrors, WorkInflation, busy_ratios,
+    predict, relative_errors,
 };
 use std::collections::HashMap;
 
@@ -78,7 +78,7 @@ pub(super) fn all_runs(runs: usize) -> String {
 pub fn prediction_blocks(Predicted { predictions, ratios }: &Predicted) -> Vec<Block> {
     let errors = |ratio: fn(&Prediction) -> Option<f64>| {
         let ratios = predictions.iter().filter_map(ratio);
-        agreement(&ratios.map(|ratio| (ratio, 1.0)).collect::<Vec<_>>()).map(|found| in_words(&found))
+        relative_errors(&ratios.map(|ratio| (ratio, 1.0)).collect::<Vec<_>>()).map(|found| in_words(&found))
     };
     let Some(all) = errors(|p| Some(p.plain_ratio)) else { return Vec::new() };
     let runs: usize = predictions.iter().map(|prediction| prediction.runs).sum();
@@ -118,7 +118,7 @@ pub fn prediction_blocks(Predicted { predictions, ratios }: &Predicted) -> Vec<B
 }
 
 /// Errors of predictions, in words.
-pub(super) fn in_words(found: &Agreement) -> String {
+pub(super) fn in_words(found: &RelativeErrors) -> String {
     format!(
         "median absolute error {:.1} %, largest {:.1} %, bias {:+.1} %",
         100.0 * found.median_absolute,

@@ -7,7 +7,7 @@ use crate::cluster::MessageCosts;
 use crate::lab::{LOOK, Lab, RankRule};
 use crate::plot::number::{between, short};
 use crate::prelude::*;
-use crate::simulate::{Cluster, Contender, Crew, Hardware, Messages, agreement};
+use crate::simulate::{Cluster, Contender, Crew, Hardware, Messages, relative_errors};
 
 /// Bytes sent to rank 0 for a pixel: three sums, three sums of squares, and the number of samples.
 const PIXEL_BYTES: f64 = 56.0;
@@ -93,7 +93,7 @@ pub fn rank_predictions(
 /// A finding about the errors, and a table of predicted and measured makespans.
 pub fn rank_prediction_blocks(predictions: &[RankPrediction]) -> Vec<Block> {
     let pairs: Vec<(f64, f64)> = predictions.iter().map(|prediction| (prediction.ratio, 1.0)).collect();
-    let Some(found) = agreement(&pairs) else { return Vec::new() };
+    let Some(found) = relative_errors(&pairs) else { return Vec::new() };
     let runs = predictions.iter().map(|prediction| prediction.runs).sum();
     let finding = format!(
         "{} of processes of this machine predicted from serial runs. Over {}: {}.",

@@ -136,9 +136,17 @@ fn reproduce_shares_its_folder_with_nobody() {
     // Bursts of an earlier run are kept.
     fs::create_dir(out.join("bursts")).unwrap();
     fs::write(out.join("bursts/bursts.csv"), "rows").unwrap();
-    end(running(folder.path(), &reproduce, "out/bursts", |path| !path.exists()));
+    // So are the verdicts of a replication, with what was measured a second time.
+    let verdicts = r#"{"theirs":"t","share":0.1,"joint_level":0.95,"level":0.95,"machines":[],"statements":[]}"#;
+    fs::write(out.join("replication.json"), verdicts).unwrap();
+    fs::write(out.join("REPLICATION.md"), "# Replication of t").unwrap();
+    fs::create_dir(out.join("again")).unwrap();
+    end(running(folder.path(), &reproduce, "out/again", |path| !path.exists()));
     let earlier = fs::read_dir(out.join("earlier")).unwrap().next().unwrap().unwrap().path();
     assert_eq!(fs::read(earlier.join("bursts/bursts.csv")).unwrap(), b"rows");
+    for name in ["replication.json", "REPLICATION.md"] {
+        assert!(earlier.join(name).is_file() && !out.join(name).exists(), "{name}");
+    }
 }
 
 #[test]

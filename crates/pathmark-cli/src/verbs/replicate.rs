@@ -7,7 +7,9 @@ use crate::atomic_file;
 use crate::command_line;
 use crate::console::markdown;
 use crate::console::output::lock_folder;
-use crate::experiment::{Options, REPLICATION, Replication, Reproduction, Sweep, Theirs, has_records, parse_share};
+use crate::experiment::{
+    Options, REPLICATION, Replication, Reproduction, Statements, Sweep, Theirs, has_records, parse_share,
+};
 use crate::lock::Sharing;
 use crate::measure::Machine;
 use crate::report::replication::{HEADS, cells, other_hardware, rule, sentence, sorted};
@@ -19,7 +21,7 @@ pub(crate) struct Arguments {
     /// The folder of somebody's rows: of an experiment, or of several
     theirs: PathBuf,
     /// Output folder: the rows that are measured here, their page, and the verdicts in REPLICATION.md and
-    /// replication.json
+    /// replication.json. DIR/again has the rows of experiments that were measured a second time
     #[arg(long, value_name = "DIR", default_value = "replication")]
     out: PathBuf,
     /// Replicate only these experiments; may be given several times
@@ -102,15 +104,14 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     files.renews("out", &data, |path| Replication::read(path).is_ok())?;
     report::claim("out", &arguments.out, &mut files)?;
     let _lock = lock_folder(&arguments.out, Sharing::Shared)?;
-    for sweep in &sweeps {
-        let summary = sweep.run(console)?;
-        note_doubts(&summary.doubts, console);
-        tell_left_out(&summary.left_out, console);
-    }
+    measure(&sweeps, console)?;
     for (theirs, _) in &runs {
         statements.push(theirs.compare(&arguments.out.join(&theirs.definition.name), share)?);
     }
-    let found = Replication::of(&arguments.theirs, share, statements, [&machines, &[Machine::look()]]);
+    let mut found = Replication::of(&arguments.theirs, share, statements, [&machines, &[Machine::look()]]);
+    let differing = found.with_other_times();
+    runs.retain(|(theirs, _)| differing.contains(&theirs.definition.name));
+    found.confirm(measured_again(runs, arguments, share, console)?);
     let words = in_words(&found);
     found.write(&data)?;
     atomic_file::write(&text, |file| file.write_all(words.as_bytes()))?;
@@ -140,6 +141,37 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
         0 => Ok(()),
         count => Err(Error::Check(format!("{} not reproduced", counted(count, "statement")))),
     }
+}
+
+fn measure(sweeps: &[Sweep<'_>], console: &Console) -> Result<()> {
+    for sweep in sweeps {
+        let summary = sweep.run(console)?;
+        note_doubts(&summary.doubts, console);
+        tell_left_out(&summary.left_out, console);
+    }
+    Ok(())
+}
+
+/// The folder within the output folder for what is measured a second time.
+pub(super) const AGAIN: &str = "again";
+
+/// Measures experiments a second time, and returns their statements.
+fn measured_again(
+    runs: Vec<(Theirs, Options)>,
+    arguments: &Arguments,
+    share: f64,
+    console: &Console,
+) -> Result<Vec<Statements>> {
+    let out = arguments.out.join(AGAIN);
+    let mut statements = Vec::new();
+    for (theirs, options) in runs {
+        let name = &theirs.definition.name;
+        console.note(&format!("{name}: times differ from theirs, so it is measured a second time"));
+        let options = Options { out: out.clone(), ..options };
+        measure(&[Sweep::new(&theirs.definition, &options, &mut Files::default())?], console)?;
+        statements.push(theirs.compare(&out.join(name), share)?);
+    }
+    Ok(statements)
 }
 
 /// The folders of the experiments, sorted by name.
@@ -173,7 +205,7 @@ fn folders(theirs: &Path, wanted: &[String]) -> Result<Vec<PathBuf>> {
 }
 
 const HEADING: &str = "# Replication";
-const TEXT: &str = "REPLICATION.md";
+pub(super) const TEXT: &str = "REPLICATION.md";
 
 /// Whether a file is such a text, which a new one may replace.
 fn is_replication(path: &Path) -> bool {

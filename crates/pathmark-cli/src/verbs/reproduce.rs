@@ -4,7 +4,7 @@ use super::overall_progress::OverallProgress;
 use super::prelude::*;
 use super::run::{Size, check_failures, note_doubts, rows, tell_left_out};
 use super::selftest::{claim_cases, claim_guards, has_prices, price_guards, try_cases, write_cases, write_guards};
-use super::{bursts, doctor, strict::Strict};
+use super::{bursts, doctor, replicate, strict::Strict};
 use crate::cases_file;
 use crate::check::{self, Case, Effort};
 use crate::command_line;
@@ -168,7 +168,8 @@ fn put_aside(out: &Path, lab: &Lab, console: &Console) -> Result<()> {
     // Verdicts are of the rows beside them.
     let verdicts = Some(claims::MARKDOWN).filter(|name| claims::is_markdown(&out.join(name)));
     let examination = Some(DOCTOR).filter(|name| Examination::read(&out.join(name)).is_ok());
-    let replication = Some(REPLICATION).filter(|name| Replication::read(&out.join(name)).is_ok());
+    let is_replication = Replication::read(&out.join(REPLICATION)).is_ok();
+    let replication = [REPLICATION, replicate::TEXT, replicate::AGAIN].into_iter().filter(|_| is_replication);
     let others = [FOLDER, report::bursts::FOLDER, cases_file::FOLDER, claims::FOLDER]
         .into_iter()
         .chain(verdicts)

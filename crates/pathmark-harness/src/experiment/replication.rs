@@ -21,7 +21,7 @@ use crate::input::read_text;
 use crate::lab::Lab;
 use crate::measure::{ImageKey, Machine, Record, SETTINGS, Setting, available_threads};
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet, VecDeque};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -340,6 +340,46 @@ impl Replication {
             level,
             machines: side_by_side(machines),
             statements,
+        }
+    }
+
+    /// The experiments with a ratio or an order that is not reproduced.
+    pub fn with_other_times(&self) -> BTreeSet<String> {
+        let own = self.statements.iter().filter(|own| own.is_timed() && own.verdict == Reproduction::NotReproduced);
+        own.map(|own| own.experiment.clone()).collect()
+    }
+
+    /// Looks at a second measurement of some experiments here: the repetitions of one measurement follow each other so
+    /// closely that all of them may be disturbed alike. A ratio stays *not reproduced* if the second measurement differs
+    /// from theirs in the same direction by more than the margin, and an order if it is reversed there, too. So the
+    /// second measurement takes verdicts back and adds none, and the joint level holds.
+    pub fn confirm(&mut self, again: Vec<Statements>) {
+        let (again, _) = judge_together(again.into_iter().flat_map(|Statements(own)| own).collect());
+        // Both measurements have the statements of their rows, in the same order.
+        let mut second: BTreeMap<String, VecDeque<Statement>> = BTreeMap::new();
+        for own in again.into_iter().filter(Statement::is_timed) {
+            second.entry(own.experiment.clone()).or_default().push_back(own);
+        }
+        let limit = 1.0 + self.share;
+        for own in self.statements.iter_mut().filter(|own| own.is_timed()) {
+            let Some(other) = second.get_mut(&own.experiment).and_then(VecDeque::pop_front) else { continue };
+            if own.verdict != Reproduction::NotReproduced {
+                continue;
+            }
+            let is_confirmed = match own.kind {
+                Kind::Order => other.verdict == Reproduction::NotReproduced,
+                _ => match [&*own, &other].map(Statement::here_over_theirs) {
+                    [Some(first), Some(second)] if first > 1.0 => second > limit,
+                    [Some(_), Some(second)] => second < 1.0 / limit,
+                    _ => false,
+                },
+            };
+            if !is_confirmed {
+                own.verdict = Reproduction::CannotTell(None);
+                let here = other.here.filter(|_| own.kind == Kind::Ratio).map(|here| format!(" ({here:.3})"));
+                let said = format!("a second measurement here does not show it{}", here.unwrap_or_default());
+                own.note = if own.note.is_empty() { said } else { format!("{}; {said}", own.note) };
+            }
         }
     }
 

@@ -64,6 +64,17 @@ pub struct Statement {
     pub note: String,
 }
 
+impl Statement {
+    /// Whether it is about times, which a machine may disturb.
+    pub(super) fn is_timed(&self) -> bool {
+        matches!(self.kind, Kind::Ratio | Kind::Order)
+    }
+
+    pub(super) fn here_over_theirs(&self) -> Option<f64> {
+        Some(self.here? / self.theirs?)
+    }
+}
+
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", tag = "is", content = "why")]
 pub enum Reproduction {

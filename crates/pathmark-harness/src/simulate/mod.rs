@@ -34,6 +34,6 @@ pub use forecast::{Bounds, Forecast, bounds, forecast, longest_first, typical_co
 pub use hardware::{Hardware, Noise, Speeds};
 pub use inflation::{BusyRatio, WorkInflation};
 pub use overhead::{Overhead, Overheads};
-pub use prediction::{Agreement, DISTURBED, Observed, Prediction, agreement, busy_ratios, predict};
+pub use prediction::{DISTURBED, Observed, Prediction, RelativeErrors, busy_ratios, predict, relative_errors};
 pub use ranks::{Cluster, Crew, Messages};
 pub use replay::{Replay, replay};

@@ -113,7 +113,7 @@ pub fn busy_ratios<'a>(runs: impl IntoIterator<Item = &'a Observed>) -> Vec<Busy
 
 /// Relative errors of predictions, as (predicted - measured) / measured.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Agreement {
+pub struct RelativeErrors {
     /// The median error; a value far from 0 shows a systematic error.
     pub bias: f64,
     pub median_absolute: f64,
@@ -121,12 +121,12 @@ pub struct Agreement {
 }
 
 /// Compares pairs of (predicted, measured) seconds; `None` without pairs.
-pub fn agreement(pairs: &[(f64, f64)]) -> Option<Agreement> {
+pub fn relative_errors(pairs: &[(f64, f64)]) -> Option<RelativeErrors> {
     let errors: Vec<f64> = pairs.iter().map(|(predicted, measured)| (predicted - measured) / measured).collect();
     let absolute: Vec<f64> = errors.iter().map(|error| error.abs()).collect();
     let median_absolute = median(&absolute)?;
     let worst_absolute = absolute.iter().copied().fold(0.0, f64::max);
-    Some(Agreement { bias: median(&errors)?, median_absolute, worst_absolute })
+    Some(RelativeErrors { bias: median(&errors)?, median_absolute, worst_absolute })
 }
 
 #[cfg(test)]
@@ -198,8 +198,8 @@ mod tests {
 
     #[test]
     fn errors_by_hand() {
-        let of = agreement(&[(1.0, 2.0), (3.0, 2.0), (2.5, 2.0), (2.0, 2.0)]).unwrap();
+        let of = relative_errors(&[(1.0, 2.0), (3.0, 2.0), (2.5, 2.0), (2.0, 2.0)]).unwrap();
         assert_eq!((of.bias, of.median_absolute, of.worst_absolute), (0.125, 0.375, 0.5));
-        assert_eq!(agreement(&[]), None);
+        assert_eq!(relative_errors(&[]), None);
     }
 }

@@ -1,11 +1,8 @@
-//! `CITATION.cff`: title, authors and licence of an artifact.
-//!
-//! Of the Citation File Format we read the part that such files use: texts on one line, and lists of authors and licences.
-//! Any other YAML in these fields is refused with its line.
+//! `CITATION.cff`: title, authors and licence of an artifact (Citation File Format 1.2).
 
+use super::yaml::{self, Node, Value};
 use crate::error::{InputError, Result};
 use crate::input::read_text;
-use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -123,74 +120,31 @@ impl Citation {
     }
 
     fn from_text(file: &str, text: &str) -> Result<Self> {
-        let mut found = Self::default();
-        let (mut key, mut seen) = (String::new(), BTreeSet::new());
-        for (index, line) in text.lines().enumerate() {
-            let refused = |field: &str, value: &str, problem: &str| {
-                InputError::new(field, value, problem).in_file(file, Some((index + 1, 1)))
-            };
-            let content = line.trim();
-            if content.is_empty() || content.starts_with('#') || content == "---" {
-                continue;
-            }
-            let is_item = content.starts_with("- ");
-            let is_nested = is_item || line.starts_with(' ');
-            // The values of other keys may be any YAML.
-            if is_nested && !matches!(key.as_str(), "authors" | "license") {
-                continue;
-            }
-            let content = content.strip_prefix("- ").unwrap_or(content).trim_start();
-            let text_of = |field: &str, value: &str| -> Result<String> {
-                let problem = "is not a text on one line, and we read no other YAML here";
-                scalar(value).ok_or_else(|| refused(field, value, problem).into())
-            };
-            if is_nested && key == "license" {
-                found.licenses.push(text_of("license", content)?);
-                continue;
-            }
-            let (name, value) =
-                content.split_once(':').ok_or_else(|| refused("line", content, "has no `key: value`"))?;
-            let (name, value) = (name.trim(), value.trim());
-            if is_nested {
-                if is_item {
-                    found.authors.push(Author::default());
-                }
-                let Some(author) = found.authors.last_mut() else {
-                    return Err(refused("authors", content, "does not begin with `- `").into());
-                };
-                match name {
-                    "family-names" => author.family = text_of(name, value)?,
-                    "given-names" => author.given = text_of(name, value)?,
-                    "name" => author.name = text_of(name, value)?,
-                    "orcid" => {
-                        author.orcid = orcid(&text_of(name, value)?)
-                            .ok_or_else(|| refused(name, value, "is not the address of an ORCID"))?;
-                    }
-                    _ => {}
-                }
-                continue;
-            }
-            if !seen.insert(name.to_string()) {
-                return Err(refused(name, value, "occurs twice").into());
-            }
-            key = name.to_string();
-            match name {
-                "title" => found.title = text_of(name, value)?,
-                "license" if !value.is_empty() => found.licenses.push(text_of(name, value)?),
-                "cff-version" | "message" => {
-                    text_of(name, value)?;
-                }
-                _ => {}
-            }
+        let root = yaml::read(file, text)?;
+        let all = Fields::of(file, "file", &root)?;
+        for name in ["cff-version", "message"] {
+            all.required(name)?;
         }
-        let missing = |name: &str| InputError::new(name, "", "is missing").in_file(file, None);
-        if let Some(name) = ["cff-version", "message", "title"].into_iter().find(|name| !seen.contains(*name)) {
-            return Err(missing(name).into());
+        let mut authors = Vec::new();
+        for node in all.list("authors")? {
+            let fields = Fields::of(file, "authors", node)?;
+            let text_of = |name: &str| fields.text(name).map(Option::unwrap_or_default);
+            let address = text_of("orcid")?;
+            let id = if address.is_empty() { Some(String::new()) } else { orcid(&address) };
+            let wrong = || fields.refused("orcid", &address, "is not the address of an ORCID");
+            let (family, given, name) = (text_of("family-names")?, text_of("given-names")?, text_of("name")?);
+            let author = Author { family, given, name, orcid: id.ok_or_else(wrong)? };
+            if author.shown().is_empty() {
+                return Err(fields.refused("authors", "", "has an author without a name").into());
+            }
+            authors.push(author);
         }
-        if found.authors.is_empty() || found.authors.iter().any(|author| author.shown().is_empty()) {
-            return Err(missing("name of an author").into());
+        if authors.is_empty() {
+            return Err(all.refused("authors", "", "is missing or empty").into());
         }
-        Ok(found)
+        let licenses = all.list("license")?;
+        let licenses = licenses.into_iter().map(|node| all.text_of("license", node)).collect::<Result<_>>()?;
+        Ok(Self { title: all.required("title")?, authors, licenses })
     }
 
     /// The text of a citation file.
@@ -238,15 +192,72 @@ fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }
 
-/// The text of a YAML scalar on one line; `None` for other YAML.
-fn scalar(value: &str) -> Option<String> {
-    let text = match value.chars().next()? {
-        '"' => serde_json::from_str(value).ok()?,
-        '\'' => value.strip_prefix('\'')?.strip_suffix('\'')?.replace("''", "'"),
-        '[' | ']' | '{' | '}' | '&' | '*' | '!' | '|' | '>' | '%' | '@' | '`' | '#' => return None,
-        _ => value.split(" #").next()?.trim_end().to_string(),
-    };
-    Some(text).filter(|text: &String| !text.trim().is_empty() && !text.contains(char::is_control))
+/// A mapping of the file, whose keys are texts.
+struct Fields<'a> {
+    file: &'a str,
+    at: (usize, usize),
+    entries: Vec<(&'a str, &'a Node)>,
+}
+
+impl<'a> Fields<'a> {
+    fn of(file: &'a str, name: &str, node: &'a Node) -> Result<Self> {
+        let Value::Map(entries) = &node.value else {
+            let error = InputError::new(name, "", "has no keys with values");
+            return Err(error.in_file(file, Some(node.at)).into());
+        };
+        let mut found: Vec<(&str, &Node)> = Vec::new();
+        for (key, value) in entries {
+            let Value::Text(text) = &key.value else { continue };
+            if found.iter().any(|(earlier, _)| earlier == text) {
+                return Err(InputError::new(text, "", "occurs twice").in_file(file, Some(key.at)).into());
+            }
+            found.push((text, value));
+        }
+        Ok(Self { file, at: node.at, entries: found })
+    }
+
+    fn get(&self, name: &str) -> Option<&'a Node> {
+        self.entries.iter().find(|(key, _)| *key == name).map(|(_, node)| *node)
+    }
+
+    /// An error at a field, or at the mapping that lacks it.
+    fn refused(&self, name: &str, value: &str, problem: &str) -> InputError {
+        let at = self.get(name).map_or(self.at, |node| node.at);
+        InputError::new(name, value, problem).in_file(self.file, Some(at))
+    }
+
+    fn text(&self, name: &str) -> Result<Option<String>> {
+        self.get(name).map(|node| self.text_of(name, node)).transpose()
+    }
+
+    fn required(&self, name: &str) -> Result<String> {
+        self.text(name)?.ok_or_else(|| self.refused(name, "", "is missing").into())
+    }
+
+    /// The items of a list. A single text is a list, too, and so is a field that is missing.
+    fn list(&self, name: &str) -> Result<Vec<&'a Node>> {
+        match self.get(name) {
+            None => Ok(Vec::new()),
+            Some(node) => match &node.value {
+                Value::List(items) => Ok(items.iter().collect()),
+                Value::Text(_) => Ok(vec![node]),
+                _ => Err(self.refused(name, "", "is no list").into()),
+            },
+        }
+    }
+
+    fn text_of(&self, name: &str, node: &Node) -> Result<String> {
+        let refused =
+            |value: &str, problem: &str| InputError::new(name, value, problem).in_file(self.file, Some(node.at)).into();
+        match &node.value {
+            Value::Text(text) if text.trim().is_empty() => Err(refused(text, "is empty")),
+            Value::Text(text) if text.trim().contains(char::is_control) => {
+                Err(refused(text, "contains a control character"))
+            }
+            Value::Text(text) => Ok(text.trim().to_string()),
+            _ => Err(refused("", "is no text")),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -292,14 +303,42 @@ mod tests {
     #[test]
     fn wrong_citations_are_told_with_their_line() {
         let head = "cff-version: 1.2.0\nmessage: m\n";
-        assert!(said(&format!("{head}title: [a]\n")).starts_with("C:3:1: title = [a]: "));
-        assert!(said(&format!("{head}title: a\ntitle: b\n")).starts_with("C:4:1: title = b: occurs twice"));
-        assert!(said(&format!("{head}title: a\nauthors:\n  name: A\n")).starts_with("C:5:1: authors = name: A: "));
-        assert!(said(&format!("{head}title: a\n")).starts_with("C: name of an author: is missing"));
-        assert!(said("message: m\ntitle: a\n").starts_with("C: cff-version: is missing"));
-        let wrong =
-            format!("{head}title: a\nauthors:\n  - name: A\n    orcid: \"https://orcid.org/0000-0002-1825-0098\"\n");
-        assert!(said(&wrong).starts_with("C:6:1: orcid = "), "{}", said(&wrong));
+        let author = "authors:\n  - name: A\n";
+        let wrong = [
+            (format!("{head}title: [a]\n{author}"), "C:3:8: title: is no text"),
+            (format!("{head}title: a\ntitle: b\n"), "C:4:1: title: occurs twice"),
+            (format!("{head}title: a\nauthors: {{ name: A }}\n"), "C:4:10: authors: is no list"),
+            (format!("{head}title: a\nauthors: [A]\n"), "C:4:11: authors: has no keys with values"),
+            (format!("{head}title: a\n"), "C:1:1: authors: is missing or empty"),
+            (format!("{head}title: a\nauthors:\n  - alias: A\n"), "C:5:5: authors: has an author without a name"),
+            (format!("message: m\ntitle: a\n{author}"), "C:1:1: cff-version: is missing"),
+            (format!("{head}{author}"), "C:1:1: title: is missing"),
+            (format!("{head}title: \"\"\n{author}"), "C:3:8: title: is empty"),
+            (format!("{head}title: \"a\\u001b\"\n{author}"), "C:3:8: title = a"),
+            (format!("{head}title: &a b\n{author}license: *a\n"), "C:6:10: license: is no list"),
+            (format!("{head}title: \"a\n"), "C:"),
+            (String::new(), "C:1:1: file: has no keys with values"),
+            (
+                format!("{head}title: a\n{author}    orcid: \"https://orcid.org/0000-0002-1825-0098\"\n"),
+                "C:6:12: orcid = ",
+            ),
+            (format!("a: {}", "[".repeat(1000)), "C:1:"),
+        ];
+        for (text, expected) in wrong {
+            let told = said(&text);
+            assert!(told.starts_with(expected), "{told}\n{text}");
+        }
+    }
+
+    /// Texts over several lines, flows, comments and anchors, as YAML has them.
+    #[test]
+    fn any_yaml_is_read() {
+        let text = "%YAML 1.2\n---\n# a comment\n{ cff-version: 1.2.0, message: 'it''s', keywords: &k [a, b], other: *k,\n\
+                    title: \"Rows of\n  two lines\", authors: [{ family-names: O\u{308}, given-names: A }], license: MIT }\n";
+        let found = Citation::from_text("C", text).unwrap();
+        assert_eq!((found.title.as_str(), found.names().as_str()), ("Rows of two lines", "A O\u{308}"));
+        let folded = "cff-version: 1.2.0\nmessage: m\ntitle: >-\n  Rows\n  of lines\nauthors:\n- name: A\n";
+        assert_eq!(Citation::from_text("C", folded).unwrap().title, "Rows of lines");
     }
 
     #[test]

@@ -17,6 +17,7 @@ mod citation;
 mod metadata;
 mod recipes;
 mod runs;
+mod yaml;
 
 pub use citation::{CITATION, Citation};
 pub use metadata::{Listed, listed};

@@ -58,7 +58,8 @@ pub fn rule(found: &Replication) -> String {
     format!(
         "Ratios of times and exponents count as reproduced if they differ by less than {} %. Orders are stated where times \
          differ by more; those that both sides are sure of must agree. With {} % confidence, no verdict on these is wrong: \
-         each has {} % (Bonferroni's inequality). Images are compared bit for bit. Seconds are not compared.",
+         each has {} % (Bonferroni's inequality). A ratio or an order is *not reproduced* only if a second measurement \
+         differs in the same way. Images are compared bit for bit. Seconds are not compared.",
         percent(found.share),
         percent(found.joint_level),
         percent(found.level),
