@@ -125,6 +125,7 @@ impl Citation {
         for name in ["cff-version", "message"] {
             all.required(name)?;
         }
+        let title = all.required("title")?;
         let mut authors = Vec::new();
         for node in all.list("authors")? {
             let fields = Fields::of(file, "authors", node)?;
@@ -144,7 +145,7 @@ impl Citation {
         }
         let licenses = all.list("license")?;
         let licenses = licenses.into_iter().map(|node| all.text_of("license", node)).collect::<Result<_>>()?;
-        Ok(Self { title: all.required("title")?, authors, licenses })
+        Ok(Self { title, authors, licenses })
     }
 
     /// The text of a citation file.
