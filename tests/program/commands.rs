@@ -32,7 +32,10 @@ has() { case " $words " in *" $1 "*) ;; *) return 1 ;; esac; }
 words=$*
 case $1 in
     doctor) exit ;;
-    run) set -- "$@" RUN ;;
+    run)
+        ! has thread-scaling || has --filter || set -- "$@" --filter strategy=serial,work-stealing,rayon
+        set -- "$@" RUN
+        ;;
     render) has --size || set -- "$@" --size RENDER ;;
     inspect) ! has --pixel || has --size || set -- "$@" --size RENDER ;;
     price) has --size || set -- "$@" --size 32x24 ;;
