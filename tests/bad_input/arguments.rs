@@ -21,6 +21,7 @@ const WRONG: &[(&[&str], &[&str])] = &[
     (&["--pin", "everywhere"], &["pin", "everywhere", "one-per-core", "0-3,8"]),
     (&["--pin", ""], &["pin", "compact"]),
     (&["--pin", "3-1"], &["pin", "3-1", "scatter"]),
+    // Other systems list no processors.
     #[cfg(target_os = "linux")]
     (&["--pin", "60000"], &["pin", "60000", "may not run on processor 60000"]),
     #[cfg(target_os = "linux")]

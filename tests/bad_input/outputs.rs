@@ -24,6 +24,7 @@ fn an_output_that_cannot_be_is_refused_before_rendering() {
         ("file", &["file", "png", "pfm"]),
         ("", &["image"]),
     ];
+    // Other systems have no /dev/full.
     if cfg!(target_os = "linux") {
         std::os::unix::fs::symlink("/dev/full", folder.path().join("full.png")).unwrap();
         cases.push(("full.png", &["image", "full.png", "not a regular file"]));
@@ -41,7 +42,7 @@ fn an_output_that_cannot_be_is_refused_before_rendering() {
     refused(folder.path(), &["inspect", "bounces", "cornell", "--csv", "nowhere/file"], 2, &[said]);
 }
 
-/// /proc refuses new files even from root.
+/// Linux's /proc refuses new files even from root.
 #[cfg(target_os = "linux")]
 #[test]
 fn refusals_of_the_system_are_system_errors() {
@@ -201,6 +202,7 @@ fn a_reader_that_has_seen_enough_is_no_failure() {
     }
 }
 
+/// The full disk is Linux's /dev/full.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_behind_standard_output_is_the_systems() {

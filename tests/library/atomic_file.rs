@@ -132,7 +132,6 @@ fn a_file_name_alone_is_written_here() {
     check_writable("image", Path::new("a-name-alone.csv")).unwrap();
 }
 
-#[cfg(unix)]
 mod unix {
     use super::{check_writable, fs, names, write};
     use std::os::unix::fs::{PermissionsExt, symlink};
@@ -182,11 +181,11 @@ mod unix {
         assert_eq!(fs::read(path).unwrap(), b"x");
     }
 
+    /// No user, not even root, may create a file in Linux's /proc.
     #[cfg(target_os = "linux")]
     #[test]
     fn a_refusal_of_the_system_is_told_as_one() {
         use super::{Error, Path};
-        // No user, not even root, may create a file in /proc.
         for error in
             [check_writable("image", Path::new("/proc/out.csv")), write(Path::new("/proc/out.csv"), |_| Ok(()))]
         {

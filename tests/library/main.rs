@@ -22,6 +22,7 @@ mod metric;
 mod mistakes;
 mod pairing;
 mod peer;
+// Other systems list no processors.
 #[cfg(target_os = "linux")]
 mod pinning;
 mod png_chunks;
@@ -38,4 +39,5 @@ mod shards;
 mod slopes;
 #[path = "../support/watchdog.rs"]
 mod watchdog;
+mod workflows;
 mod workloads;

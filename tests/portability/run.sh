@@ -8,7 +8,7 @@
 #
 # PATHMARK_PORTABILITY is the folder of the emulator, of the compilers and of what they make [default: ~/.cache/pathmark-portability]. The first run
 # installs a small Debian there, whose compiler has Rust's library for many processors. PATHMARK_PARTS names what to do, some of
-# "images files tests" [default: all].
+# "images files tests" [default: all]. target/portability keeps the checksums of each program, so an interrupted comparison continues.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 fail() { printf '%s\n' "$1" >&2; exit "$2"; }
@@ -23,6 +23,7 @@ architecture=$1
 base=${PATHMARK_PORTABILITY:-$HOME/.cache/pathmark-portability}
 root=$base/root
 repository=$PWD
+kept=$repository/target/portability
 downloads=${CARGO_HOME:-$HOME/.cargo}/registry
 parts=${PATHMARK_PARTS:-images files tests}
 for part in $parts; do
@@ -74,85 +75,58 @@ prepare() {
 here() { target/debug/pathmark "$@"; }
 there() { within "${emulated[@]}" "$@"; }
 checksum() { "$@" 2>/dev/null | grep -o 'checksum [0-9a-f]\{16,\}' || echo "no checksum"; }
-
-# The names of a kind. Of the scenes, those with few primitives: under emulation a tree takes long to build.
-names() {
-    here list "$1" --json | grep -o '"name":"[^"]*"\|"primitives":[0-9]*' | tr -d '"' | awk -F: -v kind="$1" '
-        $1 == "name" { name = $2; if (kind != "scenes") print name }
-        $1 == "primitives" && $2 <= 5000 { print name }'
-}
-
-# The options of all renders. Each scene has each estimator in both precisions; samplers, strategies and decompositions take turns.
-options() {
-    local scene estimator precision turn=0
-    local -a scenes estimators samplers strategies cuts
-    mapfile -t scenes < <(names scenes)
-    mapfile -t estimators < <(names estimators)
-    # The numbers of the others depend on the threads.
-    mapfile -t samplers < <(names samplers | while read -r sampler; do
-        [ "$(checksum here render cornell --size 2x2 --spp 4 --sampler "$sampler" -o "$work/image.pfm")" = "no checksum" ] || echo "$sampler"
-    done)
-    mapfile -t strategies < <(names strategies)
-    cuts=(rows bands:5 grid:6 tiles:5x4 tiles:3x3:hilbert samples:16:8x8)
-    for scene in "${scenes[@]}" spheres:300 bumpy-ball:400; do
-        for estimator in "${estimators[@]}"; do
-            for precision in f64 f32; do
-                echo "$scene --size 12x9 --spp 4 --threads 3 --estimator $estimator --precision $precision" \
-                    "--sampler ${samplers[turn % ${#samplers[@]}]} --strategy ${strategies[turn % ${#strategies[@]}]}" \
-                    "--decomposition ${cuts[turn % ${#cuts[@]}]}"
-            done
-            turn=$((turn + 1))
-        done
-    done
-}
-
-# Compares the checksums in a file with the expected ones, and prints a row for each precision. A render that both refuse has no checksum.
-compare() {
-    paste -d '|' "$work/options" "$work/expected" "$work/found" | awk -F'|' -v who="$1" -v differences="$work/differences" '
-        $2 !~ /^checksum/ && $2 == $3 { next }
-        { precision = $1 ~ /--precision f32/ ? "f32" : "f64"; compared[precision]++ }
-        $2 != $3 { differ[precision]++; print who ": " $1 ": " $3 ", not " $2 >>differences }
-        END { for (p in compared) printf "| %s | %s | %d | %d |\n", who, p, compared[p], differ[p] }' | sort -r
-}
+# The files that it writes are compared, and a missing file is a difference.
+quietly() { "$@" >/dev/null 2>&1 || true; }
+digest() { if [ -e "$1" ]; then sha256sum <"$1"; else echo "no file"; fi; }
+# The folder of the checksums that a program prints.
+folder() { echo "$kept/$(sha256sum <"$1" | cut -c 1-12)/$2"; }
 
 images() {
-    local level
-    options >"$work/options"
-    printf '\n| processor, instruction set | precision | checksums compared | different |\n|--|--|--|--|\n'
-    for level in $(names simd); do
-        here render cornell --size 4x3 --spp 4 --simd "$level" -o "$work/image.pfm" >/dev/null 2>&1 || continue
-        bash tests/portability/checksums.sh "$level" target/debug/pathmark <"$work/options" >"$work/found"
-        # This machine's fastest instruction set comes first and gives what the others are compared with.
-        [ -e "$work/expected" ] || cp "$work/found" "$work/expected"
-        compare "this machine, $level"
-    done
-    for level in $(there list simd --json | grep -o '"name":"[^"]*"' | cut -d '"' -f 4); do
-        within bash tests/portability/checksums.sh "$level" "${emulated[@]}" <"$work/options" >"$work/found"
-        compare "$architecture, $level"
-    done
+    local mine theirs
+    mine=$(folder target/debug/pathmark "$(uname -m)") theirs=$(folder "$root/target/$target/debug/pathmark" "$architecture")
+    mkdir -p "$mine" "$theirs"
+    # Named only when it is whole, because a run may be interrupted.
+    [ -e "$mine.options" ] || { bash tests/portability/options.sh target/debug/pathmark >"$work/options" && mv "$work/options" "$mine.options"; }
+    bash tests/portability/checksums.sh "$mine.options" "$mine" target/debug/pathmark
+    within bash tests/portability/checksums.sh "$mine.options" "$theirs" "${emulated[@]}"
+    printf '\n'
+    bash tests/portability/compare.sh "$mine/baseline" "$mine"/* "$theirs"/* || echo "images differ" >>"$work/differences"
 }
 
 told() {
-    if [ "$2" = "$3" ] && [ "$2" != "no checksum" ]; then echo "| $1 | the same |"; else echo "| $1 | DIFFERENT |" | tee -a "$work/differences"; fi
+    if [ "$2" = "$3" ] && [[ $2 != no\ * ]]; then echo "| $1 | the same |"; else echo "| $1 | DIFFERENT |" | tee -a "$work/differences"; fi
 }
 
-# Files that one of both programs writes and the other reads: pictures, parts of an image, and a checkpoint.
+# Files that one of both programs writes and the other reads: pictures, meshes, parts of an image, and checkpoints.
 files() {
-    local kind whole
+    local kind order whole
     printf '\n| file | here and there |\n|--|--|\n'
     for kind in pfm hdr exr png ppm bmp; do
-        here render cornell --kernel scalar --size 24x18 --spp 4 -o "$work/here.$kind" >/dev/null 2>&1
-        there render cornell --kernel scalar --size 24x18 --spp 4 -o "$work/there.$kind" >/dev/null 2>&1
-        told "picture .$kind" "$(sha256sum <"$work/here.$kind")" "$(sha256sum <"$work/there.$kind")"
+        quietly here render cornell --kernel scalar --size 24x18 --spp 4 -o "$work/here.$kind"
+        quietly there render cornell --kernel scalar --size 24x18 --spp 4 -o "$work/there.$kind"
+        told "picture .$kind, written" "$(digest "$work/here.$kind")" "$(digest "$work/there.$kind")"
+        quietly here image convert "$work/here.$kind" -o "$work/here-$kind.pfm"
+        quietly there image convert "$work/here.$kind" -o "$work/there-$kind.pfm"
+        told "picture .$kind, read" "$(digest "$work/here-$kind.pfm")" "$(digest "$work/there-$kind.pfm")"
+    done
+    for order in little big; do
+        cp "tests/fuzz/corpus/ply/$order.ply" "$work/square.ply"
+        printf '%s\n' 'background = [0.1, 0.2, 0.3]' '[camera.pinhole]' 'position = [0.3, 0.2, -3.0]' 'look-at = [0.0, 0.0, 0.0]' \
+            'field-of-view = 60.0' '[[objects]]' 'name = "square"' 'shape = { mesh = { file = "square.ply" } }' \
+            'material = { diffuse = { albedo = [0.7, 0.6, 0.5] } }' >"$work/square.toml"
+        set -- "$work/square.toml" --size 24x18 --spp 4
+        told "mesh .ply, $order-endian, read" "$(checksum here render "$@" -o "$work/1.pfm")" "$(checksum there render "$@" -o "$work/2.pfm")"
     done
     set -- cornell --size 24x18 --spp 32
     whole=$(checksum here render "$@" -o "$work/whole.pfm")
-    here render "$@" --shard 1/2 -o "$work/1.film" >/dev/null 2>&1
-    there render "$@" --shard 2/2 -o "$work/2.film" >/dev/null 2>&1
+    quietly here render "$@" --shard 1/2 -o "$work/1.film"
+    quietly there render "$@" --shard 2/2 -o "$work/2.film"
     told "parts of both, merged here" "$(checksum here merge "$work/1.film" "$work/2.film" -o "$work/1.pfm")" "$whole"
     told "parts of both, merged there" "$(checksum there merge "$work/1.film" "$work/2.film" -o "$work/2.pfm")" "$whole"
-    there render cornell --size 24x18 --spp 16 --checkpoint "$work/checkpoint" -o "$work/half.pfm" >/dev/null 2>&1
-    told "checkpoint of there, resumed here" "$(checksum here render "$@" --checkpoint "$work/checkpoint" -o "$work/3.pfm")" "$whole"
+    quietly here render cornell --size 24x18 --spp 16 --checkpoint "$work/ours" -o "$work/half.pfm"
+    quietly there render cornell --size 24x18 --spp 16 --checkpoint "$work/theirs" -o "$work/half.pfm"
+    told "checkpoint of there, resumed here" "$(checksum here render "$@" --checkpoint "$work/theirs" -o "$work/3.pfm")" "$whole"
+    told "checkpoint of here, resumed there" "$(checksum there render "$@" --checkpoint "$work/ours" -o "$work/4.pfm")" "$whole"
 }
 
 tests() {
@@ -167,7 +141,8 @@ emulated=("qemu-$architecture" -L "/usr/$tools" "/target/$target/debug/pathmark"
 prepare
 cargo build --locked
 within cargo build --locked --offline --target "$target"
-work=$(mktemp -d "$repository/target/portability-XXXXXX")
+mkdir -p "$kept"
+work=$(mktemp -d "$kept/work-XXXXXX")
 trap 'rm -rf "$work"' EXIT
 touch "$work/differences"
 echo "$architecture, $(date -u +%F), commit $(git rev-parse --short=12 HEAD), $(rustc --version) here, $(within rustc --version) there"

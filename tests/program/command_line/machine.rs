@@ -19,10 +19,11 @@ fn the_machine_is_described_beside_rows() {
     let file: toml::Table = text.parse().unwrap();
     let layout = serde_json::to_value(&file["machine"]["layout"]).unwrap();
     assert_eq!(layout, machine["layout"]);
+    // Other systems do not tell which processors share a core.
     assert!(!layout["cores"].as_array().unwrap().is_empty() || !cfg!(target_os = "linux"));
 }
 
-/// `none` is the default, so its cells are those without the setting.
+/// `none` is the default, so its cells are those without the setting. Other systems cannot pin.
 #[cfg(target_os = "linux")]
 #[test]
 fn pins_are_a_setting_of_experiments() {

@@ -5,6 +5,7 @@
 //! threads saves them. That slows strategies that start many threads. Counters are therefore a setting, and rows with
 //! and without them are no repetitions of each other.
 
+// `perf_event_open` is a system call of Linux alone.
 #[cfg(target_os = "linux")]
 use perf_event::{Builder, Counter, events::Event, events::Hardware};
 

@@ -57,6 +57,7 @@ fn differing(own: impl Into<Facts>, other: impl Into<Facts>) -> Option<(&'static
     pairs.map(|((name, own), (_, other))| (name, own, other)).find(|(_, own, other)| own != other)
 }
 
+/// The kernel's name, before the version that `sysinfo` gives. Rust writes `linux`, and our rows have `Linux`.
 const KERNEL: &str = if cfg!(target_os = "linux") { "Linux" } else { std::env::consts::OS };
 
 impl Machine {
@@ -139,6 +140,7 @@ fn instruction_sets() -> String {
             [$(($name, std::arch::$detect!($name))),*]
         };
     }
+    // The standard library has a macro for each architecture.
     #[cfg(target_arch = "x86_64")]
     let sets = detected!(is_x86_feature_detected:
         "sse3" "ssse3" "sse4.1" "sse4.2" "popcnt" "avx" "avx2" "bmi1" "bmi2" "fma" "f16c" "sha" "vaes" "gfni"

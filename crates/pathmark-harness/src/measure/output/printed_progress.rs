@@ -10,7 +10,7 @@ use crate::error::Error;
 use std::fs::OpenOptions;
 
 /// Accepts every text and keeps none.
-const NULL_DEVICE: &str = if cfg!(windows) { "NUL" } else { "/dev/null" };
+const NULL_DEVICE: &str = "/dev/null";
 
 pub(super) const ENTRY: Entry = Entry {
     name: "printed-progress",
