@@ -17,7 +17,7 @@ const REVERSED: [[i8; 16]; 3] = [
     [7, 6, 5, 4, 3, 2, 1, 0, 15, 14, 13, 12, 11, 10, 9, 8],
 ];
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 #[macro_use]
 mod register;
 
@@ -105,6 +105,29 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
             next += (bits >> lane & 1) as usize;
         }
     }
+    /// Packs numbers behind the first `count` of a list, and their keys into the other list. Then the first number with
+    /// the least key and the last number change places, and so do their keys. Returns the new count. No key in the mask
+    /// may be NaN.
+    #[inline(always)]
+    fn pack_least_last(
+        self,
+        keys: Self,
+        mask: Self::Mask,
+        [to, keys_to]: [&mut [Self::One]; 2],
+        count: usize,
+    ) -> usize {
+        self.pack(mask, &mut to[count..]);
+        keys.pack(mask, &mut keys_to[count..]);
+        let least = Self::splat(Self::select(mask, keys, Self::splat(f64::INFINITY)).least());
+        let (mask, is_least) = (mask.bits(), (mask & keys.equal(least)).bits());
+        // The lanes below the least; all of them if there is none.
+        let before = is_least.wrapping_sub(1) & !is_least;
+        let place = count + (mask & before).count_ones() as usize;
+        let last = count + (mask.count_ones().max(1) - 1) as usize;
+        to.swap(place, last);
+        keys_to.swap(place, last);
+        count + mask.count_ones() as usize
+    }
     /// A number, rounded if need be.
     fn one(value: f64) -> Self::One;
     fn lane(&self, lane: usize) -> f64;
@@ -123,6 +146,18 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     #[inline(always)]
     fn smaller(self, other: Self) -> Self {
         Self::select(self.lt(other), self, other)
+    }
+    /// The larger number, `other` if this one is NaN; `other` may not be NaN. Of two zeros it may be either.
+    #[must_use]
+    #[inline(always)]
+    fn at_least(self, other: Self) -> Self {
+        self.larger(other)
+    }
+    /// The smaller number likewise.
+    #[must_use]
+    #[inline(always)]
+    fn at_most(self, other: Self) -> Self {
+        self.smaller(other)
     }
     /// The least of the numbers, none of which may be NaN.
     #[inline(always)]
@@ -269,7 +304,7 @@ levels! {
     #[cfg(target_arch = "x86_64")]
     Avx2: "avx2", "AVX2 and FMA: 256-bit registers, two at a time" => avx2;
     #[cfg(target_arch = "aarch64")]
-    Neon: "neon", "NEON: 128-bit registers, four at a time" => neon;
+    Neon: "neon", "NEON: 128-bit registers, two at a time" => neon;
     Baseline: "baseline", "small arrays that the compiler vectorises: SSE2 or NEON" => portable;
 }
 

@@ -106,6 +106,10 @@ impl<M: HalfMask> Mask for Pair<M> {
     fn bits(self) -> u32 {
         M::bits_of_both(self.0, self.1)
     }
+    #[inline(always)]
+    fn any(self) -> bool {
+        M::any_of_both(self.0, self.1)
+    }
 }
 
 /// A mask with a fixed number of lanes.
@@ -115,6 +119,11 @@ pub(super) trait HalfMask: Mask {
     #[inline(always)]
     fn bits_of_both(lower: Self, upper: Self) -> u32 {
         lower.bits() | upper.bits() << Self::LANES
+    }
+    /// Whether it holds in any lane of either.
+    #[inline(always)]
+    fn any_of_both(lower: Self, upper: Self) -> bool {
+        Self::bits_of_both(lower, upper) != 0
     }
 }
 
@@ -196,6 +205,8 @@ impl<V: Float<Mask: HalfMask>> Float for Pair<V> {
     forward! {
         larger(other);
         smaller(other);
+        at_least(other);
+        at_most(other);
         about_times_plus(factor, addend);
         sooner(other);
         later(other);

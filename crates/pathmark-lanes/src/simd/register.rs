@@ -1,6 +1,8 @@
 //! Registers of numbers for any instruction set: a type lists the intrinsics that are its operations.
 
-/// An intrinsic of an instruction set that not every processor has. Values of such a set's types are made only within
+use super::Float;
+
+/// An intrinsic of an instruction set. Values of the types of a set that not every processor has are made only within
 /// its `enter`, which runs only on processors with these instructions.
 macro_rules! op {
     ($call:expr) => {
@@ -9,14 +11,14 @@ macro_rules! op {
     };
 }
 
-/// The entry into code for an instruction set: its registers in both formats, and the features of processors that it
-/// needs. These include the instructions that count bits, which all processors with AVX2 have: the compiler does not infer
-/// them from AVX2, and lanes of a mask are counted often.
+/// The entry into code for an instruction set: the numbers in lanes of both formats, the features of processors that it
+/// needs, and a prefetch. The features of AVX2 include the instructions that count bits, which all processors with AVX2
+/// have: the compiler does not infer them from AVX2, and lanes of a mask are counted often.
 macro_rules! instruction_set {
-    ($Double:ident, $Single:ident; $($feature:tt)*) => {
+    ($is_detected:ident[$($feature:tt)*]: $Double:ty, $Single:ty; ask_for($address:ident) = $ask:expr;) => {
         /// Whether this processor has the instructions used here.
         pub(super) fn is_available() -> bool {
-            $(is_x86_feature_detected!($feature))&&*
+            $($is_detected!($feature))&&*
         }
 
         /// Runs `work` with this instruction set.
@@ -24,8 +26,8 @@ macro_rules! instruction_set {
             // SAFETY: `on_level` alone comes here, with a level that has been found on this processor.
             unsafe {
                 match precision {
-                    Precision::F64 => enter::<Pair<$Double>, W>(work),
-                    Precision::F32 => enter::<Pair<$Single>, W>(work),
+                    Precision::F64 => enter::<$Double, W>(work),
+                    Precision::F32 => enter::<$Single, W>(work),
                 }
             }
         }
@@ -40,47 +42,59 @@ macro_rules! instruction_set {
         fn apart<W: Apart>(work: W) -> W::Output {
             work.run()
         }
+
+        #[inline(always)]
+        fn ask_for($address: *const i8) {
+            $ask
+        }
     };
 }
 
 /// Operators of a register that are one intrinsic each.
 macro_rules! operator {
-    ($Type:ident: $($Trait:ident $method:ident $intrinsic:ident),*) => {$(
+    ($Type:ident($isa:ident): $($Trait:ident $method:ident $intrinsic:ident),*) => {$(
         impl std::ops::$Trait for $Type {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                Self(op!(x86::$intrinsic(self.0, other.0)))
+                Self(op!($isa::$intrinsic(self.0, other.0)))
             }
         }
     )*};
 }
 
-/// A register of numbers by its intrinsics. `own` holds its own implementations of the other methods of
-/// [`Float`](super::Float).
+/// A register of numbers by its intrinsics, which are in the module `$isa`. Operations that are not a single intrinsic
+/// in every instruction set are formulas. `own` holds its own implementations of the other methods of [`Float`].
 macro_rules! register {
     (
         $(#[$about:meta])*
-        $Type:ident($Raw:ident) = $lanes:literal $One:ident, $Mask:ident, $Bits:ty, $Single:ty;
-        splat $splat:ident, load $load:ident, store $store:ident, compare $compare:ident, fused $fused:ident,
-        add $add:ident, sub $sub:ident, mul $mul:ident, div $div:ident, xor $xor:ident,
-        sqrt $sqrt:ident, min $min:ident, max $max:ident;
+        $Type:ident($isa:ident::$Raw:ident) = $lanes:literal $One:ident, $Mask:ident, $Bits:ty, $Single:ty;
+        splat $splat:ident, load $load:ident, store $store:ident,
+        add $add:ident, sub $sub:ident, mul $mul:ident, div $div:ident, sqrt $sqrt:ident;
+        neg($opposite:ident) = $neg:expr;
         abs($abs_of:ident) = $abs:expr;
         copysign($magnitude:ident, $sign:ident) = $copysign:expr;
+        fused($fused_of:ident, $factor:ident, $addend:ident) = $fused:expr;
+        lt($lt_of:ident, $lt_than:ident) = $lt:expr;
+        le($le_of:ident, $le_than:ident) = $le:expr;
+        equal($equal_of:ident, $equal_to:ident) = $equal:expr;
+        larger($larger_of:ident, $larger_or:ident) = $larger:expr;
+        smaller($smaller_of:ident, $smaller_or:ident) = $smaller:expr;
         select($mask:ident, $yes:ident, $no:ident) = $select:expr;
         own { $(fn $own:ident($($argument:tt)*) $(-> $Result:ty)? $body:block)* }
     ) => {
         $(#[$about])*
         #[derive(Clone, Copy)]
-        pub(in crate::simd) struct $Type(pub(super) x86::$Raw);
+        pub(in crate::simd) struct $Type(pub(super) $isa::$Raw);
 
-        operator!($Type: Add add $add, Sub sub $sub, Mul mul $mul, Div div $div);
+        operator!($Type($isa): Add add $add, Sub sub $sub, Mul mul $mul, Div div $div);
 
         impl std::ops::Neg for $Type {
             type Output = Self;
             #[inline(always)]
             fn neg(self) -> Self {
-                Self(op!(x86::$xor(self.0, x86::$splat(-0.0))))
+                let $opposite = self.0;
+                Self(op!($neg))
             }
         }
 
@@ -91,11 +105,11 @@ macro_rules! register {
 
             #[inline(always)]
             fn splat(value: f64) -> Self {
-                Self(op!(x86::$splat(value as $One)))
+                Self(op!($isa::$splat(value as $One)))
             }
             #[inline(always)]
             fn sqrt(self) -> Self {
-                Self(op!(x86::$sqrt(self.0)))
+                Self(op!($isa::$sqrt(self.0)))
             }
             #[inline(always)]
             fn abs(self) -> Self {
@@ -113,11 +127,13 @@ macro_rules! register {
             }
             #[inline(always)]
             fn lt(self, other: Self) -> $Mask {
-                $Mask(op!(x86::$compare::<{ x86::_CMP_LT_OQ }>(self.0, other.0)))
+                let ($lt_of, $lt_than) = (self.0, other.0);
+                $Mask(op!($lt))
             }
             #[inline(always)]
             fn le(self, other: Self) -> $Mask {
-                $Mask(op!(x86::$compare::<{ x86::_CMP_LE_OQ }>(self.0, other.0)))
+                let ($le_of, $le_than) = (self.0, other.0);
+                $Mask(op!($le))
             }
             #[inline(always)]
             fn select(mask: $Mask, yes: Self, no: Self) -> Self {
@@ -126,7 +142,7 @@ macro_rules! register {
             }
         }
 
-        impl super::Float for $Type {
+        impl crate::simd::Float for $Type {
             type Bits = $Bits;
             type One = $One;
             type Single = $Single;
@@ -136,12 +152,12 @@ macro_rules! register {
             #[inline(always)]
             fn load(from: &[$One]) -> Self {
                 assert!(from.len() >= $lanes);
-                Self(op!(x86::$load(from.as_ptr())))
+                Self(op!($isa::$load(from.as_ptr())))
             }
             #[inline(always)]
             fn store(self, to: &mut [$One]) {
                 assert!(to.len() >= $lanes);
-                op!(x86::$store(to.as_mut_ptr(), self.0));
+                op!($isa::$store(to.as_mut_ptr(), self.0));
             }
             #[inline(always)]
             fn one(value: f64) -> $One {
@@ -155,24 +171,27 @@ macro_rules! register {
             }
             #[inline(always)]
             fn equal(self, other: Self) -> $Mask {
-                $Mask(op!(x86::$compare::<{ x86::_CMP_EQ_OQ }>(self.0, other.0)))
+                let ($equal_of, $equal_to) = (self.0, other.0);
+                $Mask(op!($equal))
             }
-            // Like the processor: if either is NaN, the second.
             #[inline(always)]
             fn larger(self, other: Self) -> Self {
-                Self(op!(x86::$max(self.0, other.0)))
+                let ($larger_of, $larger_or) = (self.0, other.0);
+                Self(op!($larger))
             }
             #[inline(always)]
             fn smaller(self, other: Self) -> Self {
-                Self(op!(x86::$min(self.0, other.0)))
+                let ($smaller_of, $smaller_or) = (self.0, other.0);
+                Self(op!($smaller))
             }
             #[inline(always)]
             fn about_times_plus(self, factor: Self, addend: Self) -> Self {
-                Self(op!(x86::$fused(self.0, factor.0, addend.0)))
+                let ($fused_of, $factor, $addend) = (self.0, factor.0, addend.0);
+                Self(op!($fused))
             }
             #[inline(always)]
             fn ask_for(address: *const i8) {
-                op!(x86::_mm_prefetch::<{ x86::_MM_HINT_T0 }>(address));
+                super::ask_for(address);
             }
             #[inline(always)]
             fn apart<W: crate::simd::Apart>(work: W) -> W::Output {
@@ -184,4 +203,13 @@ macro_rules! register {
             )*
         }
     };
+}
+
+/// Lanes with another number in one of them, by way of an array with a number for each of the `N` lanes.
+#[inline(always)]
+pub(super) fn with_lane<V: Float, const N: usize>(lanes: V, lane: usize, value: f64) -> V {
+    let mut all = [V::One::default(); N];
+    lanes.store(&mut all);
+    all[lane] = V::one(value);
+    V::load(&all)
 }

@@ -25,7 +25,7 @@ fn columns<T: Copy + Default, const N: usize>(rows: &[[T; 4]]) -> Option<[[T; N]
     })
 }
 
-#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+#[cfg(target_arch = "x86_64")]
 #[inline(always)]
 fn start<T>(rows: &[[T; 4]], number: i32) -> *const [T; 4] {
     let number = number as usize;
@@ -52,13 +52,13 @@ impl Table {
     }
 
     /// Address of the row with that number, as in [`Table::row`]: without a branch, for loads into registers.
-    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+    #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub(super) fn row_start(&self, number: i32) -> *const f64 {
         start(&self.rows, number).cast()
     }
 
-    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+    #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub(super) fn single_row_start(&self, number: i32) -> *const f32 {
         start(&self.singles, number).cast()

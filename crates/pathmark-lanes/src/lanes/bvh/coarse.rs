@@ -171,8 +171,8 @@ impl<W: Float<One = f32>> Coarse<W> {
             let (low, high) = (&faces[axis * W::LANES..], &faces[(3 + axis) * W::LANES..]);
             let (low, high) = (&low[..W::LANES], &high[..W::LANES]);
             let (first, last) = if self.backward[axis] { (high, low) } else { (low, high) };
-            enter = W::load(first).about_times_plus(self.inverse[axis], self.near[axis]).larger(enter);
-            leave = W::load(last).about_times_plus(self.inverse[axis], self.far[axis]).smaller(leave);
+            enter = W::load(first).about_times_plus(self.inverse[axis], self.near[axis]).at_least(enter);
+            leave = W::load(last).about_times_plus(self.inverse[axis], self.far[axis]).at_most(leave);
         }
         (enter, enter.le(leave))
     }

@@ -7,7 +7,7 @@ use super::coarse::Scale;
 use super::collapse::{Child, CollapsedBvh, Content};
 use super::ray_packet::RayPacket;
 use crate::lanes::rays::LanesOf;
-use crate::simd::{Aligned, Apart, Float, MOST_LANES, Mask, Table, prefetch};
+use crate::simd::{Aligned, Apart, Float, MOST_LANES, Table, prefetch};
 use pathmark_tracer::scene::{Bounds, Tests};
 
 /// The tree; its root is the first node.
@@ -282,17 +282,7 @@ impl Stack {
     fn push<W: Float<One = f32>>(&mut self, children: W, enter: W, met: W::Mask) {
         // There is always room (`is_shallow`); with this explicit bound nothing below is checked.
         let count = self.count.min(PLACES - MOST_LANES - 1);
-        children.pack(met, &mut self.children[count..]);
-        enter.pack(met, &mut self.distances[count..]);
-        let nearest = W::splat(W::select(met, enter, W::splat(f64::INFINITY)).least());
-        let (met, is_first) = (met.bits(), (met & enter.equal(nearest)).bits());
-        // The lanes below the nearest; all of them if there is none.
-        let before = is_first.wrapping_sub(1) & !is_first;
-        let place = count + (met & before).count_ones() as usize;
-        let last = count + (met.count_ones().max(1) - 1) as usize;
-        self.children.swap(place, last);
-        self.distances.swap(place, last);
-        self.count = count + met.count_ones() as usize;
+        self.count = children.pack_least_last(enter, met, [&mut self.children, &mut self.distances], count);
     }
 
     /// Continues with the last child whose box begins no farther than `limit`. At exactly the nearest distance so far,

@@ -2,19 +2,27 @@
 
 use super::single::F32x8;
 use super::{Mask4, U64x4, spread, x86};
+use crate::simd::register::with_lane;
 use crate::simd::{Float, Table};
 use pathmark_tracer::math::{Bits, Real};
 
 register! {
-    F64x4(__m256d) = 4 f64, Mask4, U64x4, F32x8;
-    splat _mm256_set1_pd, load _mm256_loadu_pd, store _mm256_storeu_pd, compare _mm256_cmp_pd, fused _mm256_fmadd_pd,
-    add _mm256_add_pd, sub _mm256_sub_pd, mul _mm256_mul_pd, div _mm256_div_pd, xor _mm256_xor_pd,
-    sqrt _mm256_sqrt_pd, min _mm256_min_pd, max _mm256_max_pd;
+    F64x4(x86::__m256d) = 4 f64, Mask4, U64x4, F32x8;
+    splat _mm256_set1_pd, load _mm256_loadu_pd, store _mm256_storeu_pd,
+    add _mm256_add_pd, sub _mm256_sub_pd, mul _mm256_mul_pd, div _mm256_div_pd, sqrt _mm256_sqrt_pd;
+    neg(x) = x86::_mm256_xor_pd(x, x86::_mm256_set1_pd(-0.0));
     abs(x) = x86::_mm256_andnot_pd(x86::_mm256_set1_pd(-0.0), x);
     copysign(x, sign) = {
         let zero = x86::_mm256_set1_pd(-0.0);
         x86::_mm256_or_pd(x86::_mm256_andnot_pd(zero, x), x86::_mm256_and_pd(zero, sign))
     };
+    fused(x, factor, addend) = x86::_mm256_fmadd_pd(x, factor, addend);
+    lt(x, y) = x86::_mm256_cmp_pd::<{ x86::_CMP_LT_OQ }>(x, y);
+    le(x, y) = x86::_mm256_cmp_pd::<{ x86::_CMP_LE_OQ }>(x, y);
+    equal(x, y) = x86::_mm256_cmp_pd::<{ x86::_CMP_EQ_OQ }>(x, y);
+    // The second if either is NaN.
+    larger(x, y) = x86::_mm256_max_pd(x, y);
+    smaller(x, y) = x86::_mm256_min_pd(x, y);
     select(mask, yes, no) = x86::_mm256_blendv_pd(no, yes, mask);
     own {
         fn fill(self, mask: Mask4, from: &[f64]) -> Self {
@@ -22,10 +30,7 @@ register! {
             Self::select(mask, Self(op!(x86::_mm256_castsi256_pd(spread(mask, next)))), self)
         }
         fn set_lane(&mut self, lane: usize, value: f64) {
-            let mut all = [0.0; 4];
-            self.store(&mut all);
-            all[lane] = value;
-            *self = Self::load(&all);
+            *self = with_lane::<Self, 4>(*self, lane, value);
         }
         fn sooner(self, other: Self) -> Self {
             self.smaller(other)

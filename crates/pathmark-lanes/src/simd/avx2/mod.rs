@@ -16,7 +16,10 @@ use single::F32x8;
 use std::arch::x86_64 as x86;
 use std::ops::Not;
 
-instruction_set!(F64x4, F32x8; "avx2" "fma" "popcnt" "lzcnt" "bmi1" "bmi2");
+instruction_set! {
+    is_x86_feature_detected["avx2" "fma" "popcnt" "lzcnt" "bmi1" "bmi2"]: Pair<F64x4>, Pair<F32x8>;
+    ask_for(address) = op!(x86::_mm_prefetch::<{ x86::_MM_HINT_T0 }>(address));
+}
 
 #[derive(Clone, Copy)]
 pub(super) struct U64x4(x86::__m256i);
@@ -29,9 +32,9 @@ pub(super) struct Mask4(x86::__m256d);
 #[derive(Clone, Copy)]
 pub(super) struct Mask8(x86::__m256);
 
-operator!(U64x4: BitAnd bitand _mm256_and_si256, BitOr bitor _mm256_or_si256, BitXor bitxor _mm256_xor_si256);
-operator!(Mask4: BitAnd bitand _mm256_and_pd, BitOr bitor _mm256_or_pd);
-operator!(Mask8: BitAnd bitand _mm256_and_ps, BitOr bitor _mm256_or_ps);
+operator!(U64x4(x86): BitAnd bitand _mm256_and_si256, BitOr bitor _mm256_or_si256, BitXor bitxor _mm256_xor_si256);
+operator!(Mask4(x86): BitAnd bitand _mm256_and_pd, BitOr bitor _mm256_or_pd);
+operator!(Mask8(x86): BitAnd bitand _mm256_and_ps, BitOr bitor _mm256_or_ps);
 
 impl Not for Mask4 {
     type Output = Self;

@@ -2,19 +2,27 @@
 
 use super::{F64x4, Mask8, U64x4, narrowed, x86};
 use crate::simd::pair::Pair;
+use crate::simd::register::with_lane;
 use crate::simd::{Float, Mask, Table};
 use pathmark_tracer::math::{Bits, Real};
 
 register! {
-    F32x8(__m256) = 8 f32, Mask8, Pair<U64x4>, Self;
-    splat _mm256_set1_ps, load _mm256_loadu_ps, store _mm256_storeu_ps, compare _mm256_cmp_ps, fused _mm256_fmadd_ps,
-    add _mm256_add_ps, sub _mm256_sub_ps, mul _mm256_mul_ps, div _mm256_div_ps, xor _mm256_xor_ps,
-    sqrt _mm256_sqrt_ps, min _mm256_min_ps, max _mm256_max_ps;
+    F32x8(x86::__m256) = 8 f32, Mask8, Pair<U64x4>, Self;
+    splat _mm256_set1_ps, load _mm256_loadu_ps, store _mm256_storeu_ps,
+    add _mm256_add_ps, sub _mm256_sub_ps, mul _mm256_mul_ps, div _mm256_div_ps, sqrt _mm256_sqrt_ps;
+    neg(x) = x86::_mm256_xor_ps(x, x86::_mm256_set1_ps(-0.0));
     abs(x) = x86::_mm256_andnot_ps(x86::_mm256_set1_ps(-0.0), x);
     copysign(x, sign) = {
         let zero = x86::_mm256_set1_ps(-0.0);
         x86::_mm256_or_ps(x86::_mm256_andnot_ps(zero, x), x86::_mm256_and_ps(zero, sign))
     };
+    fused(x, factor, addend) = x86::_mm256_fmadd_ps(x, factor, addend);
+    lt(x, y) = x86::_mm256_cmp_ps::<{ x86::_CMP_LT_OQ }>(x, y);
+    le(x, y) = x86::_mm256_cmp_ps::<{ x86::_CMP_LE_OQ }>(x, y);
+    equal(x, y) = x86::_mm256_cmp_ps::<{ x86::_CMP_EQ_OQ }>(x, y);
+    // The second if either is NaN.
+    larger(x, y) = x86::_mm256_max_ps(x, y);
+    smaller(x, y) = x86::_mm256_min_ps(x, y);
     select(mask, yes, no) = x86::_mm256_blendv_ps(no, yes, mask);
     own {
         fn fill(self, mask: Mask8, from: &[f32]) -> Self {
@@ -34,10 +42,7 @@ register! {
             f64::from(op!(x86::_mm_cvtss_f32(both)))
         }
         fn set_lane(&mut self, lane: usize, value: f64) {
-            let mut all = [0.0; 8];
-            self.store(&mut all);
-            all[lane] = value as f32;
-            *self = Self::load(&all);
+            *self = with_lane::<Self, 8>(*self, lane, value);
         }
         fn number(bits: Pair<U64x4>) -> Self {
             op!({

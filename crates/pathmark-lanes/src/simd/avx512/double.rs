@@ -6,10 +6,10 @@ use crate::simd::{Float, Table};
 use pathmark_tracer::math::{Bits, Real};
 
 register! {
-    F64x8(__m512d) = 8 f64, Mask8, U64x8, F32x16;
-    splat _mm512_set1_pd, load _mm512_loadu_pd, store _mm512_storeu_pd, compare _mm512_cmp_pd_mask, fused _mm512_fmadd_pd,
-    add _mm512_add_pd, sub _mm512_sub_pd, mul _mm512_mul_pd, div _mm512_div_pd, xor _mm512_xor_pd,
-    sqrt _mm512_sqrt_pd, min _mm512_min_pd, max _mm512_max_pd;
+    F64x8(x86::__m512d) = 8 f64, Mask8, U64x8, F32x16;
+    splat _mm512_set1_pd, load _mm512_loadu_pd, store _mm512_storeu_pd,
+    add _mm512_add_pd, sub _mm512_sub_pd, mul _mm512_mul_pd, div _mm512_div_pd, sqrt _mm512_sqrt_pd;
+    neg(x) = x86::_mm512_xor_pd(x, x86::_mm512_set1_pd(-0.0));
     abs(x) = x86::_mm512_abs_pd(x);
     copysign(x, sign) = {
         // Bit by bit: the sign's bit where `first` is set, else the magnitude's.
@@ -17,6 +17,13 @@ register! {
         let (x, sign) = (x86::_mm512_castpd_si512(x), x86::_mm512_castpd_si512(sign));
         x86::_mm512_castsi512_pd(x86::_mm512_ternarylogic_epi64::<0xCA>(first, sign, x))
     };
+    fused(x, factor, addend) = x86::_mm512_fmadd_pd(x, factor, addend);
+    lt(x, y) = x86::_mm512_cmp_pd_mask::<{ x86::_CMP_LT_OQ }>(x, y);
+    le(x, y) = x86::_mm512_cmp_pd_mask::<{ x86::_CMP_LE_OQ }>(x, y);
+    equal(x, y) = x86::_mm512_cmp_pd_mask::<{ x86::_CMP_EQ_OQ }>(x, y);
+    // The second if either is NaN.
+    larger(x, y) = x86::_mm512_max_pd(x, y);
+    smaller(x, y) = x86::_mm512_min_pd(x, y);
     select(mask, yes, no) = x86::_mm512_mask_blend_pd(mask, no, yes);
     own {
         fn fill(self, mask: Mask8, from: &[f64]) -> Self {

@@ -16,7 +16,11 @@ use single::F32x16;
 use std::arch::x86_64 as x86;
 use std::ops::{BitAnd, BitOr, Not};
 
-instruction_set!(F64x8, F32x16; "avx512f" "avx512dq" "avx512vl" "avx512bw" "popcnt" "lzcnt" "bmi1" "bmi2");
+instruction_set! {
+    is_x86_feature_detected["avx512f" "avx512dq" "avx512vl" "avx512bw" "popcnt" "lzcnt" "bmi1" "bmi2"]:
+        Pair<F64x8>, Pair<F32x16>;
+    ask_for(address) = op!(x86::_mm_prefetch::<{ x86::_MM_HINT_T0 }>(address));
+}
 
 #[derive(Clone, Copy)]
 pub(super) struct U64x8(x86::__m512i);
@@ -29,7 +33,7 @@ pub(super) struct Mask8(x86::__mmask8);
 #[derive(Clone, Copy)]
 pub(super) struct Mask16(x86::__mmask16);
 
-operator!(U64x8: BitAnd bitand _mm512_and_si512, BitOr bitor _mm512_or_si512, BitXor bitxor _mm512_xor_si512);
+operator!(U64x8(x86): BitAnd bitand _mm512_and_si512, BitOr bitor _mm512_or_si512, BitXor bitxor _mm512_xor_si512);
 
 /// Sixteen bytes, repeated in every quarter of a register.
 #[inline(always)]

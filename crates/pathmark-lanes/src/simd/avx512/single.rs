@@ -6,10 +6,10 @@ use crate::simd::{Float, Table};
 use pathmark_tracer::math::{Bits, Real};
 
 register! {
-    F32x16(__m512) = 16 f32, Mask16, Pair<U64x8>, Self;
-    splat _mm512_set1_ps, load _mm512_loadu_ps, store _mm512_storeu_ps, compare _mm512_cmp_ps_mask, fused _mm512_fmadd_ps,
-    add _mm512_add_ps, sub _mm512_sub_ps, mul _mm512_mul_ps, div _mm512_div_ps, xor _mm512_xor_ps,
-    sqrt _mm512_sqrt_ps, min _mm512_min_ps, max _mm512_max_ps;
+    F32x16(x86::__m512) = 16 f32, Mask16, Pair<U64x8>, Self;
+    splat _mm512_set1_ps, load _mm512_loadu_ps, store _mm512_storeu_ps,
+    add _mm512_add_ps, sub _mm512_sub_ps, mul _mm512_mul_ps, div _mm512_div_ps, sqrt _mm512_sqrt_ps;
+    neg(x) = x86::_mm512_xor_ps(x, x86::_mm512_set1_ps(-0.0));
     abs(x) = x86::_mm512_abs_ps(x);
     copysign(x, sign) = {
         // Bit by bit: the sign's bit where `first` is set, else the magnitude's.
@@ -17,6 +17,13 @@ register! {
         let (x, sign) = (x86::_mm512_castps_si512(x), x86::_mm512_castps_si512(sign));
         x86::_mm512_castsi512_ps(x86::_mm512_ternarylogic_epi32::<0xCA>(first, sign, x))
     };
+    fused(x, factor, addend) = x86::_mm512_fmadd_ps(x, factor, addend);
+    lt(x, y) = x86::_mm512_cmp_ps_mask::<{ x86::_CMP_LT_OQ }>(x, y);
+    le(x, y) = x86::_mm512_cmp_ps_mask::<{ x86::_CMP_LE_OQ }>(x, y);
+    equal(x, y) = x86::_mm512_cmp_ps_mask::<{ x86::_CMP_EQ_OQ }>(x, y);
+    // The second if either is NaN.
+    larger(x, y) = x86::_mm512_max_ps(x, y);
+    smaller(x, y) = x86::_mm512_min_ps(x, y);
     select(mask, yes, no) = x86::_mm512_mask_blend_ps(mask, no, yes);
     own {
         fn fill(self, mask: Mask16, from: &[f32]) -> Self {

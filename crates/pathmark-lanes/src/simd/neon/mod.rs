@@ -1,159 +1,13 @@
 //! NEON, which every 64-bit ARM processor has: registers of 128 bits; a mask is a register whose lanes are all ones or
 //! all zeros.
-//!
-//! There are twice as many registers as on AVX2, each of half the size, so four work side by side instead of two.
 
 #![expect(unsafe_code, reason = "the compiler offers the instructions of a processor as unsafe functions")]
-
-/// An intrinsic of NEON.
-macro_rules! op {
-    ($call:expr) => {
-        // SAFETY: all processors with this architecture have NEON; loads and stores go to arrays of the register's size.
-        unsafe { $call }
-    };
-}
-
-/// Operators of a register that are one intrinsic each.
-macro_rules! operator {
-    ($Type:ident: $($Trait:ident $method:ident $intrinsic:ident),*) => {$(
-        impl std::ops::$Trait for $Type {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self(op!(arm::$intrinsic(self.0, other.0)))
-            }
-        }
-    )*};
-}
-
-/// A register of numbers by its intrinsics. `own` holds its own implementations of the other methods of
-/// [`Float`](super::Float).
-macro_rules! register {
-    (
-        $(#[$about:meta])*
-        $Type:ident($Raw:ident) = $lanes:literal $One:ident, $Mask:ident, $Bits:ty, $Single:ty;
-        splat $splat:ident, load $load:ident, store $store:ident, fused $fused:ident,
-        add $add:ident, sub $sub:ident, mul $mul:ident, div $div:ident, neg $neg:ident, abs $abs:ident,
-        sqrt $sqrt:ident, least $least:ident, lt $lt:ident, le $le:ident, equal $equal:ident, select $select:ident;
-        sign = $sign:expr;
-        own { $(fn $own:ident($($argument:tt)*) $(-> $Result:ty)? $body:block)* }
-    ) => {
-        $(#[$about])*
-        #[derive(Clone, Copy)]
-        pub(in crate::simd) struct $Type(pub(super) arm::$Raw);
-
-        operator!($Type: Add add $add, Sub sub $sub, Mul mul $mul, Div div $div);
-
-        impl std::ops::Neg for $Type {
-            type Output = Self;
-            #[inline(always)]
-            fn neg(self) -> Self {
-                Self(op!(arm::$neg(self.0)))
-            }
-        }
-
-        impl pathmark_tracer::math::Real for $Type {
-            type Mask = $Mask;
-            const SIGNIFICAND: u32 = $One::MANTISSA_DIGITS;
-            const SMALLEST: f64 = $One::SMALLEST;
-
-            #[inline(always)]
-            fn splat(value: f64) -> Self {
-                Self(op!(arm::$splat(value as $One)))
-            }
-            #[inline(always)]
-            fn sqrt(self) -> Self {
-                Self(op!(arm::$sqrt(self.0)))
-            }
-            #[inline(always)]
-            fn abs(self) -> Self {
-                Self(op!(arm::$abs(self.0)))
-            }
-            #[inline(always)]
-            fn times_plus(self, factor: Self, addend: Self) -> Self {
-                if Self::IS_DOUBLE { self * factor + addend } else { self.about_times_plus(factor, addend) }
-            }
-            #[inline(always)]
-            fn copysign(self, sign: Self) -> Self {
-                Self(op!(arm::$select($sign, sign.0, self.0)))
-            }
-            #[inline(always)]
-            fn lt(self, other: Self) -> $Mask {
-                $Mask(op!(arm::$lt(self.0, other.0)))
-            }
-            #[inline(always)]
-            fn le(self, other: Self) -> $Mask {
-                $Mask(op!(arm::$le(self.0, other.0)))
-            }
-            #[inline(always)]
-            fn select(mask: $Mask, yes: Self, no: Self) -> Self {
-                Self(op!(arm::$select(mask.0, yes.0, no.0)))
-            }
-        }
-
-        impl crate::simd::Float for $Type {
-            type Bits = $Bits;
-            type One = $One;
-            type Single = $Single;
-            type Register = Self;
-            const LANES: usize = $lanes;
-
-            #[inline(always)]
-            fn load(from: &[$One]) -> Self {
-                assert!(from.len() >= $lanes);
-                Self(op!(arm::$load(from.as_ptr())))
-            }
-            #[inline(always)]
-            fn store(self, to: &mut [$One]) {
-                assert!(to.len() >= $lanes);
-                op!(arm::$store(to.as_mut_ptr(), self.0));
-            }
-            #[inline(always)]
-            fn one(value: f64) -> $One {
-                value as $One
-            }
-            #[inline(always)]
-            fn lane(&self, lane: usize) -> f64 {
-                let mut all = [0.0; $lanes];
-                self.store(&mut all);
-                all[lane].into()
-            }
-            #[inline(always)]
-            fn set_lane(&mut self, lane: usize, value: f64) {
-                let mut all = [0.0; $lanes];
-                self.store(&mut all);
-                all[lane] = value as $One;
-                *self = Self::load(&all);
-            }
-            #[inline(always)]
-            fn equal(self, other: Self) -> $Mask {
-                $Mask(op!(arm::$equal(self.0, other.0)))
-            }
-            #[inline(always)]
-            fn least(self) -> f64 {
-                op!(arm::$least(self.0)).into()
-            }
-            #[inline(always)]
-            fn about_times_plus(self, factor: Self, addend: Self) -> Self {
-                Self(op!(arm::$fused(addend.0, self.0, factor.0)))
-            }
-            #[inline(never)]
-            fn apart<W: crate::simd::Apart>(work: W) -> W::Output {
-                work.run()
-            }
-            $(
-                #[inline(always)]
-                fn $own($($argument)*) $(-> $Result)? $body
-            )*
-        }
-    };
-}
 
 mod double;
 mod single;
 
 use super::pair::{HalfMask, Pair, PairMask};
-use super::{Mask, Precision, Words, Work};
+use super::{Apart, Float, Mask, Precision, Words, Work};
 use double::F64x2;
 use pathmark_tracer::math::Bits;
 use single::F32x4;
@@ -161,17 +15,10 @@ use std::arch::aarch64 as arm;
 use std::arch::is_aarch64_feature_detected;
 use std::ops::Not;
 
-/// Whether this processor has the instructions used here.
-pub(super) fn is_available() -> bool {
-    is_aarch64_feature_detected!("neon")
-}
-
-/// Runs `work` with this instruction set.
-pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
-    match precision {
-        Precision::F64 => work.run::<Pair<Pair<F64x2>>>(),
-        Precision::F32 => work.run::<Pair<Pair<F32x4>>>(),
-    }
+instruction_set! {
+    is_aarch64_feature_detected["neon"]: Pair<F64x2>, Pair<F32x4>;
+    // There is no stable intrinsic for a prefetch.
+    ask_for(_address) = ();
 }
 
 #[derive(Clone, Copy)]
@@ -185,9 +32,9 @@ pub(super) struct Mask2(arm::uint64x2_t);
 #[derive(Clone, Copy)]
 pub(super) struct Mask4(arm::uint32x4_t);
 
-operator!(U64x2: BitAnd bitand vandq_u64, BitOr bitor vorrq_u64, BitXor bitxor veorq_u64);
-operator!(Mask2: BitAnd bitand vandq_u64, BitOr bitor vorrq_u64);
-operator!(Mask4: BitAnd bitand vandq_u32, BitOr bitor vorrq_u32);
+operator!(U64x2(arm): BitAnd bitand vandq_u64, BitOr bitor vorrq_u64, BitXor bitxor veorq_u64);
+operator!(Mask2(arm): BitAnd bitand vandq_u64, BitOr bitor vorrq_u64);
+operator!(Mask4(arm): BitAnd bitand vandq_u32, BitOr bitor vorrq_u32);
 
 /// Two words as their halves, the lower half of each word first.
 #[inline(always)]
@@ -262,6 +109,10 @@ impl Mask for Mask2 {
     fn bits(self) -> u32 {
         op!(arm::vaddvq_u64(arm::vandq_u64(self.0, arm::vld1q_u64([1, 2].as_ptr())))) as u32
     }
+    #[inline(always)]
+    fn any(self) -> bool {
+        op!(arm::vmaxvq_u32(split(self.0))) != 0
+    }
 }
 
 impl HalfMask for Mask2 {
@@ -269,6 +120,10 @@ impl HalfMask for Mask2 {
     #[inline(always)]
     fn bits_of_both(lower: Self, upper: Self) -> u32 {
         Mask4::of_halves(Pair(lower, upper)).bits()
+    }
+    #[inline(always)]
+    fn any_of_both(lower: Self, upper: Self) -> bool {
+        (lower | upper).any()
     }
 }
 
@@ -289,6 +144,10 @@ impl Mask for Mask4 {
     fn bits(self) -> u32 {
         op!(arm::vaddvq_u32(arm::vandq_u32(self.0, arm::vld1q_u32([1, 2, 4, 8].as_ptr()))))
     }
+    #[inline(always)]
+    fn any(self) -> bool {
+        op!(arm::vmaxvq_u32(self.0)) != 0
+    }
 }
 
 impl HalfMask for Mask4 {
@@ -301,6 +160,10 @@ impl HalfMask for Mask4 {
             let each = arm::vld1q_u16([1, 2, 4, 8, 16, 32, 64, 128].as_ptr());
             arm::vaddvq_u16(arm::vandq_u16(arm::vuzp1q_u16(lower, upper), each)).into()
         })
+    }
+    #[inline(always)]
+    fn any_of_both(lower: Self, upper: Self) -> bool {
+        (lower | upper).any()
     }
 }
 

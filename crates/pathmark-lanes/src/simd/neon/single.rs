@@ -2,21 +2,53 @@
 
 use super::{F64x2, Mask4, U64x2, arm, split};
 use crate::simd::pair::Pair;
+use crate::simd::register::with_lane;
 use crate::simd::{Float, Mask, Table};
 use pathmark_tracer::math::Real;
 
 register! {
-    F32x4(float32x4_t) = 4 f32, Mask4, Pair<U64x2>, Self;
-    splat vdupq_n_f32, load vld1q_f32, store vst1q_f32, fused vfmaq_f32,
-    add vaddq_f32, sub vsubq_f32, mul vmulq_f32, div vdivq_f32, neg vnegq_f32, abs vabsq_f32,
-    sqrt vsqrtq_f32, least vminnmvq_f32, lt vcltq_f32, le vcleq_f32, equal vceqq_f32, select vbslq_f32;
-    sign = arm::vdupq_n_u32(1 << 31);
+    F32x4(arm::float32x4_t) = 4 f32, Mask4, Pair<U64x2>, Self;
+    splat vdupq_n_f32, load vld1q_f32, store vst1q_f32,
+    add vaddq_f32, sub vsubq_f32, mul vmulq_f32, div vdivq_f32, sqrt vsqrtq_f32;
+    neg(x) = arm::vnegq_f32(x);
+    abs(x) = arm::vabsq_f32(x);
+    copysign(x, sign) = arm::vbslq_f32(arm::vdupq_n_u32(1 << 31), sign, x);
+    fused(x, factor, addend) = arm::vfmaq_f32(addend, x, factor);
+    lt(x, y) = arm::vcltq_f32(x, y);
+    le(x, y) = arm::vcleq_f32(x, y);
+    equal(x, y) = arm::vceqq_f32(x, y);
+    larger(x, y) = arm::vbslq_f32(arm::vcgtq_f32(x, y), x, y);
+    smaller(x, y) = arm::vbslq_f32(arm::vcltq_f32(x, y), x, y);
+    select(mask, yes, no) = arm::vbslq_f32(mask, yes, no);
     own {
         fn fill(self, mask: Mask4, from: &[f32]) -> Self {
-            Self::select(mask, Self::load(from).in_order(&SPREAD, mask), self)
+            Self::select(mask, Self::load(from).in_order(&SPREAD[mask.bits() as usize & 15]), self)
         }
-        fn pack(self, mask: Mask4, to: &mut [f32]) {
-            self.in_order(&PACKED, mask).store(to);
+        fn pack_least_last(self, keys: Self, mask: Mask4, [to, keys_to]: [&mut [f32]; 2], count: usize) -> usize {
+            let least = Self::select(mask, keys, Self::splat(f64::INFINITY)).least();
+            let is_least = mask & keys.equal(Self::splat(least));
+            let both = op!({
+                let of_mask = arm::vandq_u32(mask.0, arm::vld1q_u32([1, 2, 4, 8].as_ptr()));
+                let of_least = arm::vandq_u32(is_least.0, arm::vld1q_u32([16, 32, 64, 128].as_ptr()));
+                arm::vaddvq_u32(arm::vorrq_u32(of_mask, of_least)) as usize & 255
+            });
+            let order = &LEAST_LAST[both];
+            self.in_order(order).store(&mut to[count..]);
+            keys.in_order(order).store(&mut keys_to[count..]);
+            count + usize::from(COUNTS[both])
+        }
+        // One instruction each, for numbers of which only the first may be NaN.
+        fn at_least(self, other: Self) -> Self {
+            Self(op!(arm::vmaxnmq_f32(self.0, other.0)))
+        }
+        fn at_most(self, other: Self) -> Self {
+            Self(op!(arm::vminnmq_f32(self.0, other.0)))
+        }
+        fn set_lane(&mut self, lane: usize, value: f64) {
+            *self = with_lane::<Self, 4>(*self, lane, value);
+        }
+        fn least(self) -> f64 {
+            op!(arm::vminnmvq_f32(self.0)).into()
         }
         fn number(bits: Pair<U64x2>) -> Self {
             op!({
@@ -32,11 +64,15 @@ register! {
         }
         fn rows(table: &Table, rows: Self) -> [Self; 4] {
             op!({
-                let numbers = arm::vcvtq_s32_f32(rows.0);
-                let a = arm::vld1q_f32(table.single_row_start(arm::vgetq_lane_s32::<0>(numbers)));
-                let b = arm::vld1q_f32(table.single_row_start(arm::vgetq_lane_s32::<1>(numbers)));
-                let c = arm::vld1q_f32(table.single_row_start(arm::vgetq_lane_s32::<2>(numbers)));
-                let d = arm::vld1q_f32(table.single_row_start(arm::vgetq_lane_s32::<3>(numbers)));
+                // As in `Table::row`: the first row if there is none of that number.
+                let numbers = arm::vcvtq_u32_f32(rows.0);
+                let count = arm::vdupq_n_u32(table.singles.len() as u32);
+                let numbers = arm::vandq_u32(numbers, arm::vcltq_u32(numbers, count));
+                let start = table.singles.as_ptr();
+                let a = arm::vld1q_f32(start.add(arm::vgetq_lane_u32::<0>(numbers) as usize).cast());
+                let b = arm::vld1q_f32(start.add(arm::vgetq_lane_u32::<1>(numbers) as usize).cast());
+                let c = arm::vld1q_f32(start.add(arm::vgetq_lane_u32::<2>(numbers) as usize).cast());
+                let d = arm::vld1q_f32(start.add(arm::vgetq_lane_u32::<3>(numbers) as usize).cast());
                 // The transpose of four by four: of the numbers in pairs, then of the pairs.
                 let [ab0, ab1] = [as_pairs(arm::vtrn1q_f32(a, b)), as_pairs(arm::vtrn2q_f32(a, b))];
                 let [cd0, cd1] = [as_pairs(arm::vtrn1q_f32(c, d)), as_pairs(arm::vtrn2q_f32(c, d))];
@@ -62,10 +98,9 @@ fn of_pairs(pairs: arm::float64x2_t) -> F32x4 {
 }
 
 impl F32x4 {
-    /// The numbers in the order that a table gives for a mask.
+    /// The numbers in another order.
     #[inline(always)]
-    fn in_order(self, orders: &[[u8; 16]; 16], mask: Mask4) -> Self {
-        let order = &orders[mask.bits() as usize & 15];
+    fn in_order(self, order: &[u8; 16]) -> Self {
         op!({
             let bytes = arm::vqtbl1q_u8(arm::vreinterpretq_u8_f32(self.0), arm::vld1q_u8(order.as_ptr()));
             Self(arm::vreinterpretq_f32_u8(bytes))
@@ -73,24 +108,14 @@ impl F32x4 {
     }
 }
 
-/// For each mask, the bytes of its lanes in order.
-static PACKED: [[u8; 16]; 16] = orders(true);
-
 /// For each mask, the bytes of the numbers for its lanes: the first number for the first lane in the mask, and so on.
-static SPREAD: [[u8; 16]; 16] = orders(false);
-
-const fn orders(are_packed: bool) -> [[u8; 16]; 16] {
+static SPREAD: [[u8; 16]; 16] = {
     let (mut table, mut mask) = ([[0; 16]; 16], 0);
     while mask < 16 {
         let (mut lane, mut next) = (0, 0);
         while lane < 4 {
             if mask >> lane & 1 == 1 {
-                let (to, from) = if are_packed { (next, lane) } else { (lane, next) };
-                let mut byte = 0;
-                while byte < 4 {
-                    table[mask][4 * to + byte] = (4 * from + byte) as u8;
-                    byte += 1;
-                }
+                put(&mut table[mask], lane, next);
                 next += 1;
             }
             lane += 1;
@@ -98,4 +123,50 @@ const fn orders(are_packed: bool) -> [[u8; 16]; 16] {
         mask += 1;
     }
     table
+};
+
+/// For each mask in the lower four bits and the lanes of the least numbers in the upper four, the bytes of the mask's
+/// lanes in order, after the first of the least and the last have changed places.
+static LEAST_LAST: [[u8; 16]; 256] = {
+    let (mut table, mut both) = ([[0; 16]; 256], 0);
+    while both < 256 {
+        let (mut lanes, mut count, mut lane, mut least) = ([0; 4], 0, 0, 0);
+        while lane < 4 {
+            if both >> lane & 1 == 1 {
+                lanes[count] = lane;
+                count += 1;
+            }
+            lane += 1;
+        }
+        while least < count && both >> (4 + lanes[least]) & 1 == 0 {
+            least += 1;
+        }
+        let mut place = 0;
+        while place < count {
+            let is_exchanged = least < count && (place == least || place + 1 == count);
+            put(&mut table[both], place, lanes[if is_exchanged { least + count - 1 - place } else { place }]);
+            place += 1;
+        }
+        both += 1;
+    }
+    table
+};
+
+/// The number of lanes of each mask in [`LEAST_LAST`].
+static COUNTS: [u8; 256] = {
+    let (mut table, mut both) = ([0; 256], 0_usize);
+    while both < 256 {
+        table[both] = (both & 15).count_ones() as u8;
+        both += 1;
+    }
+    table
+};
+
+/// Writes the bytes of the number in lane `from` into an order, for the number in lane `to`.
+const fn put(order: &mut [u8; 16], to: usize, from: usize) {
+    let mut byte = 0;
+    while byte < 4 {
+        order[4 * to + byte] = (4 * from + byte) as u8;
+        byte += 1;
+    }
 }
