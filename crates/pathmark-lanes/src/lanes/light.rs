@@ -1,8 +1,9 @@
 //! Next-event estimation in lanes, with a shadow ray from every lane that a light can reach.
 
 use super::kernel::Lanes;
-use super::packet::{Arrival, Packet, Vertex, own_root, vector};
-use super::rays::{LanesOf, Rays};
+use super::others::{Others, Place};
+use super::packet::{Arrival, Packet, Vertex, own_root};
+use super::rays::Rays;
 use super::tables::Kind;
 use super::targets::{Met, Start};
 use crate::simd::{Apart, Float, Mask, Words};
@@ -10,7 +11,6 @@ use pathmark_tracer::estimator::{LightSampling, camera_share, power_heuristic};
 use pathmark_tracer::kernel::Counts;
 use pathmark_tracer::math::{Bits, Ray, Rgb, Vec3};
 use pathmark_tracer::sampling::Purpose;
-use pathmark_tracer::scene::AllEffects;
 use std::f64::consts::FRAC_1_PI;
 
 /// Light from given directions, scattered by surfaces.
@@ -114,11 +114,31 @@ impl Lanes {
         packet.collected = Rgb::select(lit.lanes & met.equal(aims.primitive), found, packet.collected);
     }
 
+    /// Evaluates the materials of [`super::others`].
+    #[inline(always)]
+    fn evaluate_others<V: Float>(
+        &self,
+        others: &mut Others<V::One>,
+        at: &Arrival<V>,
+        wo: Vec3<V>,
+        wi: Vec3<V>,
+        lanes: V::Mask,
+    ) -> (Rgb<V>, V) {
+        let numbers = [at.primitive, wo.x, wo.y, wo.z, wi.x, wi.y, wi.z];
+        for (asked, number) in others.asked.iter_mut().zip(&numbers) {
+            number.store(asked);
+        }
+        let place = Place { scene: &self.scene, level: self.level, lanes: lanes.bits(), inside: at.inside.bits() };
+        others.evaluate(place, V::one);
+        let [r, g, b, density, ..] = &others.found;
+        (Rgb { r: V::load(r), g: V::load(g), b: V::load(b) }, V::load(density))
+    }
+
     /// Evaluates the scattering of light from the local direction `wi`.
     #[inline(always)]
     fn scattered<V: Float>(
         &self,
-        packet: &Packet<'_, V>,
+        packet: &mut Packet<'_, V>,
         at: &Arrival<V>,
         vertex: &Vertex<V>,
         wi: Vec3<V>,
@@ -132,15 +152,10 @@ impl Lanes {
         let mut scatters = lanes & zero.lt(wo.z * wi.z) & vertex.kind.equal(zero);
         if self.tables.has_others {
             let others = lanes & vertex.kind.equal(V::splat(Kind::Other.number()));
-            for lane in LanesOf(others.bits()) {
-                let owner = self.scene.owners[at.primitive.lane(lane) as usize];
-                let material = &self.scene.objects[owner as usize].material;
-                let (wo, wi) = (vector(&wo, lane), vector(&wi, lane));
-                let Rgb { r, g, b } = material.eval::<AllEffects>(wo, wi) * wi.z.abs();
-                scattered.r.set_lane(lane, r);
-                scattered.g.set_lane(lane, g);
-                scattered.b.set_lane(lane, b);
-                density.set_lane(lane, material.pdf::<AllEffects>(wo, wi));
+            if others.any() {
+                let (light, pdf) = self.evaluate_others(packet.others, at, wo, wi, others);
+                scattered = Rgb::select(others, light, scattered);
+                density = V::select(others, pdf, density);
             }
             scatters = scatters | others;
         }

@@ -7,6 +7,7 @@ mod filter;
 mod kernel;
 mod light;
 mod nearest;
+mod others;
 mod packet;
 mod rays;
 mod render;

@@ -1,6 +1,7 @@
 //! Packets: the state of paths in lanes between two vertices, and the points that their rays met.
 
 use super::bvh::{Scratch, Stack};
+use super::others::Others;
 use super::rays::Rays;
 use crate::sampler::PathWords;
 use crate::simd::{Apart, Float, MOST_LANES, Mask, Words};
@@ -56,11 +57,13 @@ pub(super) struct Packet<'a, V: Float> {
     depth: [u8; MOST_LANES],
     /// Working memory of searches.
     pub(super) scratch: Scratch<'a, V>,
+    /// Working memory of materials.
+    pub(super) others: &'a mut Others<V::One>,
 }
 
 impl<'a, V: Float> Packet<'a, V> {
     #[inline(always)]
-    pub(super) fn new(waiting: &'a mut [Parts], stacks: &'a mut [Stack]) -> Self {
+    pub(super) fn new(waiting: &'a mut [Parts], stacks: &'a mut [Stack], others: &'a mut Others<V::One>) -> Self {
         let zero = V::splat(0.0);
         let (vector, colour) = (Vec3::new(zero, zero, zero), Rgb { r: zero, g: zero, b: zero });
         let none = V::Bits::splat(0);
@@ -81,6 +84,7 @@ impl<'a, V: Float> Packet<'a, V> {
             waiting,
             depth: [0; MOST_LANES],
             scratch: Scratch::new(stacks),
+            others,
         }
     }
 

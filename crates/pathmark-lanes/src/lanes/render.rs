@@ -2,6 +2,7 @@
 
 use super::bvh::{Stack, Stacks};
 use super::kernel::{Lanes, Version};
+use super::others::Others;
 use super::packet::{NO_PARTS, NextPart, Packet, Parts};
 use super::rays::LanesOf;
 use super::supply::Supply;
@@ -44,7 +45,8 @@ impl Lanes {
     ) -> Counts {
         let mut counts = Counts::default();
         let mut window = Window::over(piece, out, self.rules.camera_rays > 1);
-        let mut packet = Packet::<V>::new(waiting, stacks);
+        let mut others = Others::new();
+        let mut packet = Packet::<V>::new(waiting, stacks, &mut others);
         let mut supply = Supply::<V>::new();
         // Lanes whose part of a path has ended and has not been retired yet.
         let mut ended = 0_u32;

@@ -71,6 +71,14 @@ struct Batch<V: Float> {
     count: usize,
 }
 
+/// Fills some places of a row with one word.
+#[inline(always)]
+fn same(row: &mut [u64; MOST_LANES], first: usize, count: usize, word: u32) {
+    for place in &mut row[first..][..count] {
+        *place = word.into();
+    }
+}
+
 impl Lanes {
     /// Gives free lanes their next samples.
     #[inline(always)]
@@ -107,12 +115,17 @@ impl Lanes {
         while supply.count < V::LANES {
             let Some(Handed { first, count }) = window.hand_out(V::LANES - supply.count) else { break };
             let pixel = first.y * self.width + first.x;
-            for k in 0..count {
-                let (at, sample) = (supply.count + k, first.sample + k as u32);
-                let places = self.sampler.joined(SampleKey { seed: self.seed, pixel, sample });
-                let all = [first.x.into(), first.y.into(), pixel.into(), sample.into(), places[0], places[1]];
-                for (words, word) in supply.keys.iter_mut().zip(&all) {
-                    words[at] = *word;
+            let [columns, rows, pixels, samples, ..] = &mut supply.keys;
+            same(columns, supply.count, count, first.x);
+            same(rows, supply.count, count, first.y);
+            same(pixels, supply.count, count, pixel);
+            for (word, sample) in samples[supply.count..][..count].iter_mut().zip(first.sample..) {
+                *word = sample.into();
+            }
+            if self.sampler.is_spread() {
+                for k in 0..count {
+                    let key = SampleKey { seed: self.seed, pixel, sample: first.sample + k as u32 };
+                    [supply.keys[4][supply.count + k], supply.keys[5][supply.count + k]] = self.sampler.joined(key);
                 }
             }
             supply.count += count;

@@ -2,18 +2,18 @@
 
 use super::kernel::Lanes;
 use super::light::ArrivedAtLight;
+use super::others::{Others, Place};
 use super::packet::{Arrival, Packet, Part, Vertex, colour, own_root, vector};
 use super::rays::LanesOf;
 use super::tables::{GIVES_OFF, Kind};
-use crate::simd::{Apart, Float, MOST_LANES, Mask, Number, Words};
+use crate::simd::{Apart, Float, Mask, Words};
 use pathmark_tracer::effect::{EffectSet, all};
 use pathmark_tracer::kernel::Counts;
-use pathmark_tracer::material::{Density, Dielectric, MATERIALS, Mirror};
+use pathmark_tracer::material::{Dielectric, MATERIALS, Mirror};
 use pathmark_tracer::math::{
     Bits, Frame, Ray, Rgb, Vec3, curved_normal, dot, fresnel_dielectric, fresnel_schlick, reflect, refract,
 };
 use pathmark_tracer::sampling::{Purpose, cosine_hemisphere};
-use pathmark_tracer::scene::{AllEffects, Scene};
 use std::marker::PhantomData;
 
 /// The materials that the code for a profile contains. Constants and no functions: a branch on a constant is left out
@@ -54,7 +54,6 @@ impl Lanes {
         counts: &mut Counts,
     ) -> u32 {
         let number = packet.vertices.plus(V::Bits::splat(1));
-        let numbers = self.sampler.pair::<V>(&packet.words, number, packet.branch, Purpose::Bsdf);
         let (t, primitive) = self.nearest(&packet.rays, packet.alive, &mut packet.scratch, counts);
         counts.rays += u64::from(packet.alive.count_ones());
         let alive = V::Mask::from_bits(packet.alive);
@@ -97,7 +96,7 @@ impl Lanes {
             Some(at) => at,
             None => self.arrive(packet, met, t, primitive),
         };
-        let (scattered, split) = self.scatter::<V, X, AIMS>(packet, &at, &vertex, numbers, ended);
+        let (scattered, split) = self.scatter::<V, X, AIMS>(packet, &at, &vertex, ended);
         ended |= scattered.absorbed;
         leave::<V, X>(packet, &at, number, &scattered, split, &mut ended);
         ended
@@ -151,39 +150,72 @@ impl Lanes {
     #[inline(always)]
     fn scatter<V: Float, X: EffectSet, const AIMS: bool>(
         &self,
-        packet: &Packet<'_, V>,
+        packet: &mut Packet<'_, V>,
         at: &Arrival<V>,
         vertex: &Vertex<V>,
-        numbers: [V; 2],
         ended: u32,
     ) -> (Scattered<V>, Option<Split<V>>) {
-        let none = V::Mask::from_bits(0);
-        let wi = cosine_hemisphere(numbers);
-        let density = wi.z * V::splat(std::f64::consts::FRAC_1_PI);
-        let mut scattered = Scattered { wi, weight: vertex.albedo, is_delta: none, density, absorbed: 0 };
-        let mut split = None;
-        if Materials::<X>::ARE_DIFFUSE {
-            return (scattered, split);
-        }
+        let (zero, none) = (V::splat(0.0), V::Mask::from_bits(0));
         let going_on = at.lanes & !V::Mask::from_bits(ended);
+        let is_mirror = if Materials::<X>::ARE_DIFFUSE {
+            none
+        } else {
+            going_on & vertex.kind.equal(V::splat(Kind::Mirror.number()))
+        };
+        let (mut numbers, mut wi) = ([zero; 2], Vec3::new(zero, zero, zero));
+        // Mirrors need no random numbers.
+        if Materials::<X>::ARE_DIFFUSE || is_mirror.bits() != going_on.bits() {
+            numbers = self.sampler.pair::<V>(&packet.words, vertex.number, packet.branch, Purpose::Bsdf);
+            wi = cosine_hemisphere(numbers);
+        }
+        let density = wi.z * V::splat(std::f64::consts::FRAC_1_PI);
+        let mut scattered = Scattered { wi, weight: vertex.albedo, is_delta: is_mirror, density, absorbed: 0 };
+        let mut split = None;
         let others = going_on & V::splat(0.5).lt(vertex.kind);
-        if !others.any() {
+        if Materials::<X>::ARE_DIFFUSE || !others.any() {
             return (scattered, split);
         }
         let wo = at.frame.to_local(-packet.rays.ray.direction);
-        let is_mirror = others & vertex.kind.equal(V::splat(Kind::Mirror.number()));
         scattered.wi = Vec3::select(is_mirror, reflect(wo), scattered.wi);
-        scattered.is_delta = is_mirror;
         let is_glass = others & vertex.kind.equal(V::splat(Kind::Dielectric.number()));
         if is_glass.any() {
             split = self.refract::<V, AIMS>(at, vertex, wo, numbers[0], is_glass, &mut scattered);
         }
         let is_other = others & vertex.kind.equal(V::splat(Kind::Other.number()));
         if Materials::<X>::HAVE_OTHERS && is_other.any() {
-            let (inside, primitive) = (at.inside.bits(), at.primitive);
-            scattered = V::apart(OneByOne { kernel: self, primitive, wo, numbers, lanes: is_other, inside, scattered });
+            self.scatter_others(packet.others, at, wo, numbers, is_other, &mut scattered);
         }
         (scattered, split)
+    }
+
+    /// Samples directions at the materials of [`super::others`].
+    #[inline(always)]
+    fn scatter_others<V: Float>(
+        &self,
+        others: &mut Others<V::One>,
+        at: &Arrival<V>,
+        wo: Vec3<V>,
+        numbers: [V; 2],
+        lanes: V::Mask,
+        scattered: &mut Scattered<V>,
+    ) {
+        let [primitive, x, y, z, first, second, _] = &mut others.asked;
+        at.primitive.store(primitive);
+        wo.x.store(x);
+        wo.y.store(y);
+        wo.z.store(z);
+        numbers[0].store(first);
+        numbers[1].store(second);
+        let place = Place { scene: &self.scene, level: self.level, lanes: lanes.bits(), inside: at.inside.bits() };
+        others.sample(place, V::one);
+        let [x, y, z, r, g, b, density] = &others.found;
+        let wi = Vec3::new(V::load(x), V::load(y), V::load(z));
+        let weight = Rgb { r: V::load(r), g: V::load(g), b: V::load(b) };
+        scattered.wi = Vec3::select(lanes, wi, scattered.wi);
+        scattered.weight = Rgb::select(lanes, weight, scattered.weight);
+        scattered.density = V::select(lanes, V::load(density), scattered.density);
+        scattered.is_delta = scattered.is_delta | V::Mask::from_bits(others.deltas);
+        scattered.absorbed |= others.absorbed;
     }
 
     /// Samples reflection or refraction at dielectrics; a path that splits takes both.
@@ -225,7 +257,7 @@ impl Lanes {
         } else {
             chance = V::splat(0.25) + V::splat(0.5) * reflectance;
             reflects = number.lt(chance);
-            let share = V::select(reflects, reflectance / chance, transmittance / (one - chance));
+            let share = V::select(reflects, reflectance, transmittance) / V::select(reflects, chance, one - chance);
             weight = tint * V::select(goes_both_ways, reflectance, share);
         }
         let reflects = is_total | reflects | goes_both_ways;
@@ -235,77 +267,6 @@ impl Lanes {
         scattered.is_delta = scattered.is_delta | lanes;
         let lanes = goes_both_ways.bits();
         (lanes != 0).then(|| Split { lanes, wi: refracted, weight: tint * transmittance })
-    }
-}
-
-/// Materials that lanes have no code for. A separate function to limit compile time, see [`super::supply`]. It takes
-/// copies: a value whose address is passed to a function cannot stay in a register, called or not.
-struct OneByOne<'a, V: Float> {
-    kernel: &'a Lanes,
-    primitive: V,
-    /// Local directions to the paths' previous vertices.
-    wo: Vec3<V>,
-    numbers: [V; 2],
-    lanes: V::Mask,
-    inside: u32,
-    scattered: Scattered<V>,
-}
-
-impl<V: Float> Apart for OneByOne<'_, V> {
-    type Output = Scattered<V>;
-
-    #[inline(always)]
-    fn run(self) -> Scattered<V> {
-        let Self { kernel, primitive, wo, numbers, lanes, inside, mut scattered } = self;
-        let mut all = AllScattered { numbers: [[V::One::default(); MOST_LANES]; 13], deltas: 0, absorbed: 0 };
-        let Scattered { wi, weight, density, .. } = &scattered;
-        let vectors = [primitive, wo.x, wo.y, wo.z, numbers[0], numbers[1]];
-        let results = [wi.x, wi.y, wi.z, weight.r, weight.g, weight.b, *density];
-        for (numbers, vector) in all.numbers.iter_mut().zip(vectors.into_iter().chain(results)) {
-            vector.store(numbers);
-        }
-        all.scatter(&kernel.scene, lanes.bits(), inside, V::one);
-        let [.., x, y, z, r, g, b, density] = &all.numbers;
-        scattered.wi = Vec3 { x: V::load(x), y: V::load(y), z: V::load(z) };
-        scattered.weight = Rgb { r: V::load(r), g: V::load(g), b: V::load(b) };
-        scattered.density = V::load(density);
-        scattered.is_delta = scattered.is_delta | V::Mask::from_bits(all.deltas);
-        scattered.absorbed |= all.absorbed;
-        scattered
-    }
-}
-
-/// Scattering in memory instead of registers. Input: primitives, local directions to the previous vertices, and two
-/// random numbers. Output: directions, weights and densities.
-struct AllScattered<T> {
-    numbers: [[T; MOST_LANES]; 13],
-    deltas: u32,
-    absorbed: u32,
-}
-
-impl<T: Number> AllScattered<T> {
-    /// Samples the materials of some lanes. It needs no SIMD instructions and is compiled apart from code with them.
-    #[inline(never)]
-    fn scatter(&mut self, scene: &Scene, lanes: u32, inside: u32, one: fn(f64) -> T) {
-        for lane in LanesOf(lanes) {
-            let [primitive, x, y, z, first, second] = [0, 1, 2, 3, 4, 5].map(|k: usize| self.numbers[k][lane].into());
-            let owner = scene.owners[primitive as usize];
-            let material = &scene.objects[owner as usize].material;
-            let sample = material.sample::<AllEffects>(Vec3::new(x, y, z), inside >> lane & 1 == 1, [first, second]);
-            let Some(sample) = sample else {
-                self.absorbed |= 1 << lane;
-                continue;
-            };
-            let Vec3 { x, y, z } = sample.wi;
-            let Rgb { r, g, b } = sample.weight;
-            for (k, number) in (6..).zip([x, y, z, r, g, b]) {
-                self.numbers[k][lane] = one(number);
-            }
-            match sample.density {
-                Density::Delta => self.deltas |= 1 << lane,
-                Density::PerSolidAngle(density) => self.numbers[12][lane] = one(density),
-            }
-        }
     }
 }
 

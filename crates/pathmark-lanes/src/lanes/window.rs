@@ -16,6 +16,20 @@ pub(super) struct Place {
     pub(super) sample: u32,
 }
 
+/// Replaces invalid radiances by black ones. Returns their number. No part of the kernel, because it is hardly ever
+/// called.
+#[inline(never)]
+fn blacken(radiances: &mut [[f64; 3]]) -> u64 {
+    let mut invalid = 0;
+    for radiance in radiances {
+        if !Rgb::from(*radiance).is_valid_radiance() {
+            invalid += 1;
+            *radiance = [0.0; 3];
+        }
+    }
+    invalid
+}
+
 /// Consecutive samples of a pixel that were handed out.
 pub(super) struct Handed {
     pub(super) first: Place,
@@ -35,7 +49,7 @@ pub(super) struct Window<'a> {
     taken: u64,
     /// A bit for each slot that was given back.
     done: [u64; SIZE / 64],
-    radiances: [Rgb; SIZE],
+    radiances: [[f64; 3]; SIZE],
     /// Whether the radiance of other camera rays is added to each sample.
     has_seen_light: bool,
     sum: SampleSum,
@@ -77,7 +91,7 @@ impl<'a> Window<'a> {
             first,
             taken: 0,
             done: [0; SIZE / 64],
-            radiances: [Rgb::BLACK; SIZE],
+            radiances: [[0.0; 3]; SIZE],
             has_seen_light,
             sum: SampleSum::default(),
         }
@@ -102,14 +116,15 @@ impl<'a> Window<'a> {
     /// Stores radiance that is added to a sample when it is given back.
     #[inline(always)]
     pub(super) fn add_beforehand(&mut self, slot: u64, radiance: Rgb) {
-        self.radiances[slot as usize % SIZE] = radiance;
+        self.radiances[slot as usize % SIZE] = radiance.into();
     }
 
     /// Gives a sample back; [`Window::settle`] adds it.
     #[inline(always)]
     pub(super) fn give_back(&mut self, slot: u64, radiance: Rgb) {
         let slot = slot as usize % SIZE;
-        self.radiances[slot] = if self.has_seen_light { radiance + self.radiances[slot] } else { radiance };
+        let radiance = if self.has_seen_light { radiance + self.radiances[slot].into() } else { radiance };
+        self.radiances[slot] = radiance.into();
         self.done[slot / 64] |= 1 << (slot % 64);
     }
 
@@ -126,24 +141,80 @@ impl<'a> Window<'a> {
             // A mask of `ready` ones, from the slot on.
             *word &= !((u64::MAX >> (64 - ready)) << (slot % 64));
             self.taken += u64::from(ready);
-            for k in slot..slot + ready as usize {
-                self.add(self.radiances[k], counts);
+            counts.paths += u64::from(ready);
+            let end = slot + ready as usize;
+            let mut start = slot;
+            while start < end {
+                start += self.add(start..end, counts);
             }
         }
     }
 
-    /// Adds the first sample that has not been added yet.
+    /// Adds the first samples that have not been added yet, as many as are of one pixel. Returns their number.
     #[inline(always)]
-    fn add(&mut self, radiance: Rgb, counts: &mut Counts) {
-        counts.paths += 1;
-        let is_valid = radiance.is_valid_radiance();
-        counts.invalid += u64::from(!is_valid);
-        self.sum.add(if is_valid { radiance } else { Rgb::BLACK });
-        if self.first.sample + 1 == self.samples.end {
+    fn add(&mut self, slots: std::ops::Range<usize>, counts: &mut Counts) -> usize {
+        let left = (self.samples.end - self.first.sample) as usize;
+        let count = left.min(slots.len());
+        let radiances = &mut self.radiances[slots][..count];
+        // First all together, which takes a few instructions.
+        let mut are_valid = true;
+        for channel in radiances.as_flattened() {
+            are_valid &= *channel >= 0.0 && *channel < f64::INFINITY;
+        }
+        if !are_valid {
+            counts.invalid += blacken(radiances);
+        }
+        self.sum.add_all(radiances);
+        if count == left {
             let column = (self.first.x - self.bounds.x0) as usize;
             self.out.row_mut(self.first.y)[column] = self.sum.total();
             self.sum.clear();
         }
-        self.first.advance(1, &self.bounds, &self.samples);
+        self.first.advance(count as u32, &self.bounds, &self.samples);
+        count
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn radiance(slot: u64) -> Rgb {
+        let value = 1.0 / (slot + 1) as f64;
+        let r = match slot {
+            4 => f64::NAN,
+            17 => f64::INFINITY,
+            30 => -1.0,
+            _ => value,
+        };
+        Rgb { r, g: value, b: -0.0 }
+    }
+
+    /// Samples of two pixels that come back in another order are added in their own order, and invalid ones are black.
+    #[test]
+    fn samples_are_added_in_order() {
+        let piece = Piece { bounds: Bounds { x0: 3, y0: 5, x1: 5, y1: 6 }, samples: 7..28 };
+        let (mut out, mut counts) = (TileBuffer::new(piece.bounds), Counts::default());
+        let mut window = Window::over(&piece, &mut out, false);
+        let mut handed = 0;
+        while let Some(Handed { count, .. }) = window.hand_out(8) {
+            handed += count;
+        }
+        assert_eq!(handed, 42);
+        for k in 0..42 {
+            let slot = k * 25 % 42;
+            window.give_back(slot, radiance(slot));
+            window.settle(&mut counts);
+        }
+        assert_eq!((counts.paths, counts.invalid), (42, 3));
+        let expected = [0..21, 21..42].map(|slots| {
+            let mut sum = SampleSum::default();
+            for radiance in slots.map(radiance) {
+                sum.add(if radiance.is_valid_radiance() { radiance } else { Rgb::BLACK });
+            }
+            sum.total()
+        });
+        let found: Vec<PixelSum> = out.rows().flatten().copied().collect();
+        assert_eq!(found, expected);
     }
 }

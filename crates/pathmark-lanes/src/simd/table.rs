@@ -179,6 +179,8 @@ impl Numbers {
 pub trait Number: Copy + Default + PartialOrd + Into<f64> + Send + Sync {
     /// The numbers in that format; none if they are in the other.
     fn all(numbers: &Numbers) -> &[Self];
+    /// These numbers, if they are in that format.
+    fn of_doubles(numbers: &mut [f64]) -> Option<&mut [Self]>;
 }
 
 impl Number for f64 {
@@ -186,11 +188,21 @@ impl Number for f64 {
     fn all(numbers: &Numbers) -> &[Self] {
         &numbers.doubles
     }
+
+    #[inline(always)]
+    fn of_doubles(numbers: &mut [f64]) -> Option<&mut [Self]> {
+        Some(numbers)
+    }
 }
 
 impl Number for f32 {
     #[inline(always)]
     fn all(numbers: &Numbers) -> &[Self] {
         &numbers.singles
+    }
+
+    #[inline(always)]
+    fn of_doubles(_: &mut [f64]) -> Option<&mut [Self]> {
+        None
     }
 }

@@ -76,6 +76,25 @@ impl SampleSum {
         }
     }
 
+    /// Adds the next samples.
+    #[inline(always)]
+    pub fn add_all(&mut self, mut radiances: &[[f64; 3]]) {
+        while !radiances.is_empty() {
+            let room = (SAMPLE_BLOCK - self.block.count) as usize;
+            let (now, later) = radiances.split_at(room.min(radiances.len()));
+            // A copy, which stays in registers.
+            let mut block = self.block;
+            for radiance in now {
+                block.add(Rgb::from(*radiance));
+            }
+            self.block = block;
+            if block.count == SAMPLE_BLOCK {
+                self.carry();
+            }
+            radiances = later;
+        }
+    }
+
     /// Adds the sum of the next blocks, which was computed elsewhere. All parts but the last have the same number of
     /// blocks, a power of two.
     pub fn add_part(&mut self, part: PixelSum, is_last: bool) {

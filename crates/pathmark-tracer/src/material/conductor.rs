@@ -10,9 +10,9 @@
 
 use super::angular::{scattered, schlick_average};
 use super::ggx::facets;
-use super::{Bsdf, BsdfSample, Density, Facets, Ggx};
+use super::{Bsdf, BsdfSample, Density, Facets, Ggx, RoughSample};
 use crate::input::albedo;
-use crate::math::{Rgb, Vec3, dot, fresnel_schlick, reflect};
+use crate::math::{Real, Rgb, Vec3, dot, fresnel_schlick, reflect};
 use serde::Deserialize;
 
 /// A metal surface, the same on both sides.
@@ -29,8 +29,8 @@ pub struct Conductor {
 
 impl Conductor {
     #[inline(always)]
-    fn fresnel(&self, cos: f64) -> Rgb {
-        let Rgb { r, g, b } = self.f0;
+    fn fresnel<T: Real>(&self, cos: T) -> Rgb<T> {
+        let Rgb { r, g, b } = Rgb::splat(self.f0);
         Rgb { r: fresnel_schlick(cos, r), g: fresnel_schlick(cos, g), b: fresnel_schlick(cos, b) }
     }
 
@@ -39,39 +39,46 @@ impl Conductor {
         BsdfSample { wi: reflect(wo), weight: self.fresnel(wo.z), density: Density::Delta }
     }
 
-    fn rough(&self, ggx: Ggx, wo: Vec3, wi: Vec3) -> Rgb {
+    #[inline(always)]
+    fn rough<T: Real>(&self, ggx: Ggx, wo: Vec3<T>, wi: Vec3<T>) -> Rgb<T> {
         // The facet's cosine is computed from wo + wi, so exchanging the two directions gives the same bits.
         let sum = wo + wi;
-        self.fresnel(0.5 * dot(sum, sum).sqrt()) * ggx.reflection(wo, wi)
+        self.fresnel(T::splat(0.5) * dot(sum, sum).sqrt()) * ggx.reflection(wo, wi)
     }
 }
 
 impl Bsdf for Conductor {
     const EXAMPLES: &'static [&'static str] = &["{ conductor = { alpha = ROUGHNESS, f0 = [1.0, 0.77, 0.34] } }"];
 
-    /// Samples visible normals; the weight is F G2/G1, at most 1. `None` if the mirrored direction is below the
-    /// surface.
+    /// `None` if the mirrored direction is below the surface.
     #[inline(always)]
     fn sample(&self, wo: Vec3, _inside: bool, u: [f64; 2]) -> Option<BsdfSample> {
-        let Facets::Rough(ggx) = self.facets else { return Some(self.reflected(wo)) };
+        self.sample_rough(wo, u).map_or_else(|| Some(self.reflected(wo)), RoughSample::above)
+    }
+
+    /// Samples visible normals; the weight is F G2/G1, at most 1.
+    #[inline(always)]
+    fn sample_rough<T: Real>(&self, wo: Vec3<T>, u: [T; 2]) -> Option<RoughSample<T>> {
+        let Facets::Rough(ggx) = self.facets else { return None };
         let h = ggx.visible_normal(wo, u);
         let wi = Ggx::mirrored(wo, h);
         let weight = self.fresnel(dot(wo, h)) * ggx.unshadowed(wo, wi);
-        (wi.z > 0.0).then(|| BsdfSample { wi, weight, density: Density::PerSolidAngle(ggx.pdf(wo, wi)) })
+        Some(RoughSample { wi, weight, density: ggx.pdf(wo, wi) })
     }
 
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
-        match self.facets {
-            Facets::Mirror => Rgb::BLACK,
-            Facets::Rough(ggx) => self.rough(ggx, wo, wi),
-        }
+        self.eval_rough(wo, wi).map_or(Rgb::BLACK, |(value, _)| value)
     }
 
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f64 {
-        match self.facets {
-            Facets::Rough(ggx) if wi.z > 0.0 => ggx.pdf(wo, wi),
-            _ => 0.0,
-        }
+        self.eval_rough(wo, wi).map_or(0.0, |(_, density)| density)
+    }
+
+    #[inline(always)]
+    fn eval_rough<T: Real>(&self, wo: Vec3<T>, wi: Vec3<T>) -> Option<(Rgb<T>, T)> {
+        let Facets::Rough(ggx) = self.facets else { return None };
+        let zero = T::splat(0.0);
+        Some((self.rough(ggx, wo, wi), T::select(zero.lt(wi.z), ggx.pdf(wo, wi), zero)))
     }
 
     #[inline(always)]

@@ -6,7 +6,7 @@
 //! arccosine, have no cancellation, and need no guard against division by small cosines.
 
 use crate::input::roughness;
-use crate::math::{Vec3, dot, sin_cos_turns};
+use crate::math::{Real, Vec3, dot, sin_cos_turns};
 use serde::Deserializer;
 use std::f64::consts::PI;
 
@@ -49,21 +49,19 @@ impl Ggx {
     }
 
     #[inline(always)]
-    fn r(self, w: Vec3) -> f64 {
-        (w.z * w.z + self.alpha * self.alpha * (w.x * w.x + w.y * w.y)).sqrt()
+    fn r<T: Real>(self, w: Vec3<T>) -> T {
+        let alpha = T::splat(self.alpha);
+        (w.z * w.z + alpha * alpha * (w.x * w.x + w.y * w.y)).sqrt()
     }
 
     /// Returns D: the area of facets with normal `h`, per steradian and per area of the surface. The relative error is
     /// below 20 rounding errors.
     #[inline(always)]
-    pub fn density(self, h: Vec3) -> f64 {
-        if h.z <= 0.0 {
-            return 0.0;
-        }
-        let alpha2 = self.alpha * self.alpha;
+    pub fn density<T: Real>(self, h: Vec3<T>) -> T {
+        let (zero, one, alpha2) = (T::splat(0.0), T::splat(1.0), T::splat(self.alpha * self.alpha));
         // The equivalent form with 1 + cos²(α² - 1) cancels: for α = 1e-4 it has no correct digit in single precision.
         let a = (h.x * h.x + h.y * h.y) / alpha2 + h.z * h.z;
-        1.0 / (PI * alpha2 * a * a)
+        T::select(h.z.le(zero), zero, one / (T::splat(PI) * alpha2 * a * a))
     }
 
     /// Returns G1: the share of facets facing `w` that is visible from there.
@@ -74,7 +72,7 @@ impl Ggx {
 
     /// Returns G2/G1: the share of facets visible from `wo` that is also visible from `wi`.
     #[inline(always)]
-    pub fn unshadowed(self, wo: Vec3, wi: Vec3) -> f64 {
+    pub fn unshadowed<T: Real>(self, wo: Vec3<T>, wi: Vec3<T>) -> T {
         let (ro, ri) = (self.r(wo), self.r(wi));
         wi.z * (wo.z + ro) / (wi.z * ro + wo.z * ri)
     }
@@ -82,42 +80,41 @@ impl Ggx {
     /// Returns D G2 / (4 cos cos): the BSDF of facets that reflect all light. It is 0 unless both directions are above
     /// the surface.
     #[inline(always)]
-    pub fn reflection(self, wo: Vec3, wi: Vec3) -> f64 {
-        if wo.z <= 0.0 || wi.z <= 0.0 {
-            return 0.0;
-        }
-        self.density((wo + wi).normalized()) / (2.0 * (wi.z * self.r(wo) + wo.z * self.r(wi)))
+    pub fn reflection<T: Real>(self, wo: Vec3<T>, wi: Vec3<T>) -> T {
+        let (zero, two) = (T::splat(0.0), T::splat(2.0));
+        let value = self.density((wo + wi).normalized()) / (two * (wi.z * self.r(wo) + wo.z * self.r(wi)));
+        T::select(wo.z.le(zero) | wi.z.le(zero), zero, value)
     }
 
     /// Returns D G1 / (4 cos): the density per steradian of `wi`, the mirror direction at a normal from
     /// [`Ggx::visible_normal`]. Directions below the surface have a density, too, so it integrates to 1 over the
     /// sphere.
     #[inline(always)]
-    pub fn pdf(self, wo: Vec3, wi: Vec3) -> f64 {
-        let sum = wo + wi;
-        if wo.z < 0.0 || sum.z <= 0.0 {
-            return 0.0;
-        }
-        self.density(sum.normalized()) / (2.0 * (wo.z + self.r(wo)))
+    pub fn pdf<T: Real>(self, wo: Vec3<T>, wi: Vec3<T>) -> T {
+        let (zero, two, sum) = (T::splat(0.0), T::splat(2.0), wo + wi);
+        let value = self.density(sum.normalized()) / (two * (wo.z + self.r(wo)));
+        T::select(wo.z.lt(zero) | sum.z.le(zero), zero, value)
     }
 
     /// Samples a facet's normal in proportion to its area visible from `wo`: Dupuy and Benyoub, "Sampling Visible GGX
     /// Normals with Spherical Caps", Computer Graphics Forum 42(8), 2023, after Heitz, "Sampling the GGX Distribution
     /// of Visible Normals", Journal of Computer Graphics Techniques 7(4), 2018.
     #[inline(always)]
-    pub fn visible_normal(self, wo: Vec3, [u, v]: [f64; 2]) -> Vec3 {
+    pub fn visible_normal<T: Real>(self, wo: Vec3<T>, [u, v]: [T; 2]) -> Vec3<T> {
+        let (zero, one, alpha) = (T::splat(0.0), T::splat(1.0), T::splat(self.alpha));
         // Stretched, the facets form a half sphere; mirror directions at its visible part are uniform over a cap.
-        let stretched = Vec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z).normalized();
-        let height = (1.0 - v) * (1.0 + stretched.z);
+        let stretched = Vec3::new(alpha * wo.x, alpha * wo.y, wo.z).normalized();
+        let height = (one - v) * (one + stretched.z);
         let z = height - stretched.z;
-        let rim = (1.0 - z * z).max(0.0).sqrt();
+        let square = one - z * z;
+        let rim = T::select(zero.lt(square), square, zero).sqrt();
         let (sin, cos) = sin_cos_turns(u);
-        Vec3::new(self.alpha * (rim * cos + stretched.x), self.alpha * (rim * sin + stretched.y), height).normalized()
+        Vec3::new(alpha * (rim * cos + stretched.x), alpha * (rim * sin + stretched.y), height).normalized()
     }
 
     /// Returns the mirror direction of `wo` at a facet with normal `h`.
     #[inline(always)]
-    pub(super) fn mirrored(wo: Vec3, h: Vec3) -> Vec3 {
-        (h * (2.0 * dot(wo, h)) - wo).normalized()
+    pub(super) fn mirrored<T: Real>(wo: Vec3<T>, h: Vec3<T>) -> Vec3<T> {
+        (h * (T::splat(2.0) * dot(wo, h)) - wo).normalized()
     }
 }

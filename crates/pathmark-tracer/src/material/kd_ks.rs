@@ -17,9 +17,9 @@
 
 use super::angular::{scattered, schlick_average};
 use super::ggx::facets;
-use super::{Bsdf, BsdfSample, Density, Facets, Ggx};
+use super::{Bsdf, BsdfSample, Density, Facets, Ggx, RoughSample};
 use crate::input::{albedo, refractive_index};
-use crate::math::{Rgb, Vec3, fresnel_dielectric, reflect};
+use crate::math::{Real, Rgb, Vec3, fresnel_dielectric, reflect};
 use crate::sampling::cosine_hemisphere;
 use serde::Deserialize;
 use std::f64::consts::FRAC_1_PI;
@@ -56,40 +56,43 @@ pub struct KdKs {
 
 impl KdKs {
     #[inline(always)]
-    fn fresnel(&self, wo: Vec3) -> f64 {
-        fresnel_dielectric(wo.z, self.eta)
+    fn fresnel<T: Real>(&self, wo: Vec3<T>) -> T {
+        fresnel_dielectric(wo.z, T::splat(self.eta))
     }
 
     /// Returns the probability of sampling the facets under [`Sampling::Vndf`].
     #[inline(always)]
-    fn chance(&self, fresnel: f64) -> f64 {
-        let matte = (1.0 - fresnel) * self.kd.max_channel();
+    fn chance<T: Real>(&self, fresnel: T) -> T {
+        let zero = T::splat(0.0);
+        let matte = (T::splat(1.0) - fresnel) * T::splat(self.kd.max_channel());
         // Avoids 0/0: if nothing is reflected, the choice does not matter.
-        if fresnel > 0.0 { fresnel / (fresnel + matte) } else { 0.0 }
+        T::select(zero.lt(fresnel), fresnel / (fresnel + matte), zero)
     }
 
     #[inline(always)]
-    fn rough(&self, ggx: Ggx, fresnel: f64, wo: Vec3, wi: Vec3) -> Rgb {
+    fn rough<T: Real>(&self, ggx: Ggx, fresnel: T, wo: Vec3<T>, wi: Vec3<T>) -> Rgb<T> {
         let facets = fresnel * ggx.reflection(wo, wi);
-        self.kd * ((1.0 - fresnel) * FRAC_1_PI) + Rgb::WHITE * facets
+        Rgb::splat(self.kd) * ((T::splat(1.0) - fresnel) * T::splat(FRAC_1_PI)) + Rgb::splat(Rgb::WHITE) * facets
     }
 
     #[inline(always)]
-    fn rough_pdf(&self, ggx: Ggx, fresnel: f64, wo: Vec3, wi: Vec3) -> f64 {
-        let cosine = wi.z * FRAC_1_PI;
+    fn rough_pdf<T: Real>(&self, ggx: Ggx, fresnel: T, wo: Vec3<T>, wi: Vec3<T>) -> T {
+        let cosine = wi.z * T::splat(FRAC_1_PI);
         match self.sampling {
             Sampling::Cosine => cosine,
             Sampling::Vndf => {
                 let chance = self.chance(fresnel);
-                chance * ggx.pdf(wo, wi) + (1.0 - chance) * cosine
+                chance * ggx.pdf(wo, wi) + (T::splat(1.0) - chance) * cosine
             }
         }
     }
 
     /// Chooses the facets with probability `chance`; the random number is rescaled to [0, 1) for the chosen part.
     #[inline(always)]
-    fn choose([u, v]: [f64; 2], chance: f64) -> (bool, [f64; 2]) {
-        if u < chance { (true, [u / chance, v]) } else { (false, [(u - chance) / (1.0 - chance), v]) }
+    fn choose<T: Real>([u, v]: [T; 2], chance: T) -> (T::Mask, [T; 2]) {
+        let is_chosen = u.lt(chance);
+        let rest = T::select(is_chosen, u, u - chance);
+        (is_chosen, [rest / T::select(is_chosen, chance, T::splat(1.0) - chance), v])
     }
 }
 
@@ -102,40 +105,42 @@ impl Bsdf for KdKs {
 
     #[inline(always)]
     fn sample(&self, wo: Vec3, _inside: bool, u: [f64; 2]) -> Option<BsdfSample> {
+        if let Some(sample) = self.sample_rough(wo, u) {
+            return sample.above();
+        }
         let fresnel = self.fresnel(wo);
-        let Facets::Rough(ggx) = self.facets else {
-            // Each lobe's probability is its share of the light, so the share cancels in the weight.
-            let (is_mirrored, u) = Self::choose(u, fresnel);
-            return Some(if is_mirrored {
-                BsdfSample { wi: reflect(wo), weight: Rgb::WHITE, density: Density::Delta }
-            } else {
-                let wi = cosine_hemisphere(u);
-                BsdfSample { wi, weight: self.kd, density: Density::PerSolidAngle((1.0 - fresnel) * wi.z * FRAC_1_PI) }
-            });
-        };
+        // Each lobe's probability is its share of the light, so the share cancels in the weight.
+        let (is_mirrored, u) = Self::choose(u, fresnel);
+        Some(if is_mirrored {
+            BsdfSample { wi: reflect(wo), weight: Rgb::WHITE, density: Density::Delta }
+        } else {
+            let wi = cosine_hemisphere(u);
+            BsdfSample { wi, weight: self.kd, density: Density::PerSolidAngle((1.0 - fresnel) * wi.z * FRAC_1_PI) }
+        })
+    }
+
+    #[inline(always)]
+    fn sample_rough<T: Real>(&self, wo: Vec3<T>, u: [T; 2]) -> Option<RoughSample<T>> {
+        let Facets::Rough(ggx) = self.facets else { return None };
+        let fresnel = self.fresnel(wo);
         let wi = match self.sampling {
             Sampling::Cosine => cosine_hemisphere(u),
-            Sampling::Vndf => match Self::choose(u, self.chance(fresnel)) {
-                (true, u) => Ggx::mirrored(wo, ggx.visible_normal(wo, u)),
-                (false, u) => cosine_hemisphere(u),
-            },
+            Sampling::Vndf => {
+                let (is_facet, u) = Self::choose(u, self.chance(fresnel));
+                Vec3::select(is_facet, Ggx::mirrored(wo, ggx.visible_normal(wo, u)), cosine_hemisphere(u))
+            }
         };
-        if wi.z <= 0.0 {
-            return None;
-        }
-        let pdf = self.rough_pdf(ggx, fresnel, wo, wi);
-        let weight = self.rough(ggx, fresnel, wo, wi) * (wi.z / pdf);
-        Some(BsdfSample { wi, weight, density: Density::PerSolidAngle(pdf) })
+        let density = self.rough_pdf(ggx, fresnel, wo, wi);
+        Some(RoughSample { wi, weight: self.rough(ggx, fresnel, wo, wi) * (wi.z / density), density })
     }
 
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return Rgb::BLACK;
         }
-        let fresnel = self.fresnel(wo);
-        match self.facets {
-            Facets::Mirror => self.kd * ((1.0 - fresnel) * FRAC_1_PI),
-            Facets::Rough(ggx) => self.rough(ggx, fresnel, wo, wi),
+        match self.eval_rough(wo, wi) {
+            Some((value, _)) => value,
+            None => self.kd * ((1.0 - self.fresnel(wo)) * FRAC_1_PI),
         }
     }
 
@@ -143,11 +148,22 @@ impl Bsdf for KdKs {
         if wo.z < 0.0 || wi.z <= 0.0 {
             return 0.0;
         }
-        let fresnel = self.fresnel(wo);
-        match self.facets {
-            Facets::Mirror => (1.0 - fresnel) * wi.z * FRAC_1_PI,
-            Facets::Rough(ggx) => self.rough_pdf(ggx, fresnel, wo, wi),
+        match self.eval_rough(wo, wi) {
+            Some((_, density)) => density,
+            None => (1.0 - self.fresnel(wo)) * wi.z * FRAC_1_PI,
         }
+    }
+
+    #[inline(always)]
+    fn eval_rough<T: Real>(&self, wo: Vec3<T>, wi: Vec3<T>) -> Option<(Rgb<T>, T)> {
+        let Facets::Rough(ggx) = self.facets else { return None };
+        let (zero, fresnel) = (T::splat(0.0), self.fresnel(wo));
+        let (value, density) = (self.rough(ggx, fresnel, wo, wi), self.rough_pdf(ggx, fresnel, wo, wi));
+        let is_below = wi.z.le(zero);
+        Some((
+            Rgb::select(wo.z.le(zero) | is_below, Rgb::splat(Rgb::BLACK), value),
+            T::select(wo.z.lt(zero) | is_below, zero, density),
+        ))
     }
 
     #[inline(always)]

@@ -14,7 +14,7 @@ mod mirror;
 mod polished;
 
 use crate::effect::{EffectSet, Effects, Entry};
-use crate::math::{Rgb, Vec3};
+use crate::math::{Real, Rgb, Vec3};
 use serde::Deserialize;
 
 pub use dielectric::Fresnel;
@@ -40,6 +40,25 @@ pub struct BsdfSample {
     pub density: Density,
 }
 
+/// Directions that a rough surface samples, for one vertex or several side by side. Where `wi.z` is not above 0, the
+/// surface absorbs the path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoughSample<T = f64> {
+    pub wi: Vec3<T>,
+    pub weight: Rgb<T>,
+    /// Per steradian.
+    pub density: T,
+}
+
+impl RoughSample {
+    /// Returns the sample; `None` if the surface absorbs the path.
+    #[inline(always)]
+    fn above(self) -> Option<BsdfSample> {
+        let Self { wi, weight, density } = self;
+        (wi.z > 0.0).then_some(BsdfSample { wi, weight, density: Density::PerSolidAngle(density) })
+    }
+}
+
 /// Scattering at a point. Directions are unit vectors in the local frame (z is the shading normal on the side of `wo`)
 /// and point away from the surface.
 pub trait Bsdf {
@@ -53,6 +72,20 @@ pub trait Bsdf {
     /// Samples a direction `wi` for light that leaves along `wo`. `inside` says that `wo` is on the inner side of the
     /// shape. `None` means absorption.
     fn sample(&self, wo: Vec3, inside: bool, u: [f64; 2]) -> Option<BsdfSample>;
+
+    /// Samples like [`Bsdf::sample`], for vertices side by side. `None` unless the surface is rough: one by one, its
+    /// samples may have different kinds of density.
+    #[inline(always)]
+    fn sample_rough<T: Real>(&self, _wo: Vec3<T>, _u: [T; 2]) -> Option<RoughSample<T>> {
+        None
+    }
+
+    /// Returns [`Bsdf::eval`] and [`Bsdf::pdf`], for pairs of directions side by side; `None` unless the surface is
+    /// rough.
+    #[inline(always)]
+    fn eval_rough<T: Real>(&self, _wo: Vec3<T>, _wi: Vec3<T>) -> Option<(Rgb<T>, T)> {
+        None
+    }
 
     /// Returns the BSDF's value per steradian for a pair of directions; black for delta lobes.
     #[inline(always)]
@@ -143,6 +176,25 @@ macro_rules! materials {
                     $(Self::$Type(material) if X::EFFECTS.cover($Type::EFFECT) => material.sample(wo, inside, u),)*
                     _ => None,
                 }
+            }
+
+            /// [`Bsdf::sample_rough`] of the material.
+            #[inline(always)]
+            pub fn sample_rough<T: Real>(&self, wo: Vec3<T>, u: [T; 2]) -> Option<RoughSample<T>> {
+                match self { $(Self::$Type(material) => material.sample_rough(wo, u)),* }
+            }
+
+            /// [`Bsdf::eval_rough`] of the material.
+            #[inline(always)]
+            pub fn eval_rough<T: Real>(&self, wo: Vec3<T>, wi: Vec3<T>) -> Option<(Rgb<T>, T)> {
+                match self { $(Self::$Type(material) => material.eval_rough(wo, wi)),* }
+            }
+
+            /// Whether [`Material::sample_rough`] and [`Material::eval_rough`] have results.
+            #[inline]
+            pub fn is_rough(&self) -> bool {
+                // The compiler leaves out the sample itself.
+                self.sample_rough::<f64>(Vec3::new(0.0, 0.0, 1.0), [0.5; 2]).is_some()
             }
 
             /// [`Bsdf::eval`] for the effects in `X`.
