@@ -61,7 +61,7 @@ macro_rules! operator {
 macro_rules! register {
     (
         $(#[$about:meta])*
-        $Type:ident($Raw:ident) = $lanes:literal $One:ident, $Mask:ident, $Bits:ty, $Single:ty;
+        $Type:ident($Raw:ident) = $lanes:literal $One:ident, $Mask:ident, $Bits:ty, $Digits:ty, $Single:ty;
         splat $splat:ident, load $load:ident, store $store:ident, compare $compare:ident, fused $fused:ident,
         add $add:ident, sub $sub:ident, mul $mul:ident, div $div:ident, xor $xor:ident,
         sqrt $sqrt:ident, min $min:ident, max $max:ident;
@@ -128,6 +128,7 @@ macro_rules! register {
 
         impl super::Float for $Type {
             type Bits = $Bits;
+            type Digits = $Digits;
             type One = $One;
             type Single = $Single;
             type Register = Self;

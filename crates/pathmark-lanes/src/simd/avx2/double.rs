@@ -2,11 +2,11 @@
 
 use super::single::F32x8;
 use super::{Mask4, U64x4, spread, x86};
-use crate::simd::{Float, Table};
+use crate::simd::{Float, Table, Words};
 use pathmark_tracer::math::{Bits, Real};
 
 register! {
-    F64x4(__m256d) = 4 f64, Mask4, U64x4, F32x8;
+    F64x4(__m256d) = 4 f64, Mask4, U64x4, U64x4, F32x8;
     splat _mm256_set1_pd, load _mm256_loadu_pd, store _mm256_storeu_pd, compare _mm256_cmp_pd, fused _mm256_fmadd_pd,
     add _mm256_add_pd, sub _mm256_sub_pd, mul _mm256_mul_pd, div _mm256_div_pd, xor _mm256_xor_pd,
     sqrt _mm256_sqrt_pd, min _mm256_min_pd, max _mm256_max_pd;
@@ -46,6 +46,15 @@ register! {
         }
         fn unit(bits: U64x4) -> Self {
             Self::number(bits.down::<11>()) * Self::splat(1.0 / 9_007_199_254_740_992.0)
+        }
+        fn halves(bits: U64x4) -> [U64x4; 2] {
+            [bits, bits.down::<32>()]
+        }
+        fn choose_digits(mask: Mask4, yes: U64x4, no: U64x4) -> U64x4 {
+            U64x4::choose(mask, yes, no)
+        }
+        fn fraction(digits: U64x4) -> Self {
+            Self::unit(digits.reversed())
         }
         fn rows(table: &Table, rows: Self) -> [Self; 4] {
             let mut numbers = [0; 4];

@@ -93,6 +93,7 @@ macro_rules! register {
 
         impl crate::simd::Float for $Type {
             type Bits = $Bits;
+            type Digits = $Bits;
             type One = $One;
             type Single = $Single;
             type Register = Self;
@@ -136,6 +137,18 @@ macro_rules! register {
             #[inline(always)]
             fn about_times_plus(self, factor: Self, addend: Self) -> Self {
                 Self(op!(arm::$fused(addend.0, self.0, factor.0)))
+            }
+            #[inline(always)]
+            fn halves(bits: $Bits) -> [$Bits; 2] {
+                [bits, pathmark_tracer::math::Bits::down::<32>(bits)]
+            }
+            #[inline(always)]
+            fn choose_digits(mask: $Mask, yes: $Bits, no: $Bits) -> $Bits {
+                <$Bits as crate::simd::Words<$Mask>>::choose(mask, yes, no)
+            }
+            #[inline(always)]
+            fn fraction(digits: $Bits) -> Self {
+                Self::unit(pathmark_tracer::math::Bits::reversed(digits))
             }
             #[inline(never)]
             fn apart<W: crate::simd::Apart>(work: W) -> W::Output {
