@@ -28,7 +28,7 @@ impl Work for InEachLane {
         let none = V::Bits::splat(0);
         let mut first = 0;
         while first < PAIRS / u64::from(VERTICES) {
-            let words: PathWords<V::Bits> = self.sampler.words(1, V::Bits::splat(black_box(first)), none, [none; 2]);
+            let [_, words]: [PathWords<V::Bits>; 2] = self.sampler.words(1, V::Bits::splat(black_box(first)), none);
             for vertex in 1..=VERTICES {
                 let [u, v] = self.sampler.pair::<V>(&words, V::Bits::splat(vertex.into()), none, Purpose::Bsdf);
                 sum = sum + u + v;

@@ -3,7 +3,7 @@
 
 use crate::simd::{Apart, Float, Words};
 use pathmark_tracer::math::Bits;
-use pathmark_tracer::sampling::{Purpose, SampleKey, hash, independent, mix, sobol};
+use pathmark_tracer::sampling::{Purpose, hash, independent, mix, sobol};
 
 /// A sampler that is available in lanes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,10 +18,9 @@ pub enum InLanes {
 pub struct PathWords<B> {
     /// A mix of the seed, the pixel and, if it matters, the sample.
     pub path: B,
-    /// The sample's index, or its digits as the sampler needs them.
+    /// Only for [`InLanes::is_spread`]: the sample's digits, and in the upper half its position in the order that the film
+    /// and the first vertex share.
     pub sample: B,
-    /// Its positions in the order that the film and the first vertex share.
-    pub joined: [B; 2],
 }
 
 impl InLanes {
@@ -41,24 +40,16 @@ impl InLanes {
         self == Self::Sobol
     }
 
-    /// The positions of a sample in the order that the film and the first vertex share; 0 if the sampler has none.
+    /// Computes the values that all random numbers of each sample share: those on the film, and those at the vertices.
     #[inline(always)]
-    pub fn joined(self, key: SampleKey) -> [u64; 2] {
-        match self {
-            Self::Independent | Self::Hash => [0; 2],
-            Self::Sobol => sobol::joined(sobol::pixel(key.seed, u64::from(key.pixel)), key.sample).map(u64::from),
+    pub fn words<B: Bits>(self, seed: u64, pixel: B, sample: B) -> [PathWords<B>; 2] {
+        if self != Self::Sobol {
+            let words = PathWords { path: independent::path(seed, pixel.up::<32>() | sample), sample: B::splat(0) };
+            return [words; 2];
         }
-    }
-
-    /// Computes the values that all random numbers of each sample share.
-    #[inline(always)]
-    pub fn words<B: Bits>(self, seed: u64, pixel: B, sample: B, joined: [B; 2]) -> PathWords<B> {
-        let path = match self {
-            Self::Independent | Self::Hash => independent::path(seed, pixel.up::<32>() | sample),
-            Self::Sobol => sobol::pixel(seed, pixel),
-        };
-        let sample = if self == Self::Sobol { sobol::digits(sample) } else { sample };
-        PathWords { path, sample, joined }
+        let path = sobol::pixel(seed, pixel);
+        let ([film, first], digits) = (sobol::joined(path, sample), sobol::digits(sample));
+        [PathWords { path, sample: digits | film.up::<32>() }, PathWords { path, sample: digits | first.up::<32>() }]
     }
 
     /// The pairs at vertex `bounce` of part `branch` of each path.
@@ -70,32 +61,43 @@ impl InLanes {
         branch: V::Bits,
         purpose: Purpose,
     ) -> [V; 2] {
+        self.draw(words, bounce, branch, purpose, false)
+    }
+
+    /// The first number of each pair.
+    #[inline(always)]
+    pub fn number<V: Float>(self, words: &PathWords<V::Bits>, bounce: V::Bits, branch: V::Bits, purpose: Purpose) -> V {
+        let [first, _] = self.draw(words, bounce, branch, purpose, true);
+        first
+    }
+
+    /// The pairs; `sobol` does not compute their second numbers if `is_single`.
+    #[inline(always)]
+    fn draw<V: Float>(
+        self,
+        words: &PathWords<V::Bits>,
+        bounce: V::Bits,
+        branch: V::Bits,
+        purpose: Purpose,
+        is_single: bool,
+    ) -> [V; 2] {
         let dimension = bounce.up::<32>() | branch.up::<16>() | V::Bits::splat(purpose as u64);
+        if self == Self::Sobol {
+            return V::apart(Scrambled { words, dimension, purpose, is_single });
+        }
         let key = mix(words.path ^ dimension);
-        let [first, second] = match self {
-            Self::Independent => independent::pcg32(key, dimension),
-            Self::Hash => hash::both(key),
-            Self::Sobol => return V::apart(Scrambled { key, words, bounce, branch, purpose }),
-        };
+        let [first, second] = if self == Self::Hash { hash::both(key) } else { independent::pcg32(key, dimension) };
         [V::unit(first), V::unit(second)]
     }
 }
 
 /// A pair of `sobol`. It takes so many operations that a function call costs little beside them.
 struct Scrambled<'a, V: Float> {
-    /// A mix of everything but the sample's index.
-    key: V::Bits,
     words: &'a PathWords<V::Bits>,
-    bounce: V::Bits,
-    branch: V::Bits,
+    dimension: V::Bits,
     purpose: Purpose,
-}
-
-impl<V: Float> Scrambled<'_, V> {
-    #[inline(always)]
-    fn own_place(&self) -> V::Bits {
-        sobol::own_place(self.key, self.words.sample)
-    }
+    /// Whether the first number is enough.
+    is_single: bool,
 }
 
 impl<V: Float> Apart for Scrambled<'_, V> {
@@ -103,17 +105,32 @@ impl<V: Float> Apart for Scrambled<'_, V> {
 
     #[inline(always)]
     fn run(self) -> [V; 2] {
-        let Self { key, words, bounce, branch, purpose } = &self;
-        let place = match purpose {
-            // Only the camera uses this purpose.
-            Purpose::Film => words.joined[0],
-            Purpose::Bsdf | Purpose::Light => {
-                let is_first = (bounce.up::<16>() | *branch).equal(V::Bits::splat(1 << 16));
-                V::Bits::choose(is_first, words.joined[1], self.own_place())
-            }
-            _ => self.own_place(),
-        };
-        let [first, second] = sobol::fractions(*key, place);
-        [V::unit(first), V::unit(second)]
+        let Self { words, dimension, purpose, is_single } = self;
+        let key = mix(words.path ^ dimension);
+        let [digits, joined] = V::halves(words.sample);
+        let mut place = joined;
+        // Only the camera uses this purpose.
+        if purpose != Purpose::Film {
+            let own = sobol::own_place(seed::<V>(sobol::order(key)), digits);
+            place = if matches!(purpose, Purpose::Bsdf | Purpose::Light) {
+                let is_first = dimension.equal(V::Bits::splat(1 << 32 | purpose as u64));
+                V::choose_digits(is_first, joined, own)
+            } else {
+                own
+            };
+        }
+        let first = V::fraction(sobol::first(place, seed::<V>(key)));
+        if is_single {
+            return [first; 2];
+        }
+        let [_, upper] = V::halves(key);
+        [first, V::fraction(sobol::second(place, [upper, upper.down::<16>()]))]
     }
+}
+
+/// The lower halves of words as seeds.
+#[inline(always)]
+fn seed<V: Float>(words: V::Bits) -> [V::Digits; 2] {
+    let ([lower, _], [shifted, _]) = (V::halves(words), V::halves(words.down::<16>()));
+    [lower, shifted]
 }

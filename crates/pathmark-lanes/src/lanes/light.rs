@@ -89,7 +89,7 @@ impl Lanes {
         let going_on = at.lanes & !V::Mask::from_bits(ended);
         let place = self.sampler.pair::<V>(&packet.words, vertex.number, packet.branch, Purpose::Light);
         let choice = if targets.are_several() {
-            self.sampler.pair::<V>(&packet.words, vertex.number, packet.branch, Purpose::LightChoice)[0]
+            self.sampler.number::<V>(&packet.words, vertex.number, packet.branch, Purpose::LightChoice)
         } else {
             V::splat(0.0)
         };

@@ -78,7 +78,7 @@ impl<'a, V: Float> Packet<'a, V> {
             collected: colour,
             vertices: none,
             branch: none,
-            words: PathWords { path: none, sample: none, joined: [none; 2] },
+            words: PathWords { path: none, sample: none },
             density: V::splat(-1.0),
             slots: [0; MOST_LANES],
             waiting,

@@ -10,7 +10,7 @@ use crate::simd::{Apart, Float, MOST_LANES, Mask, Words};
 use pathmark_tracer::estimator::camera_share;
 use pathmark_tracer::kernel::Counts;
 use pathmark_tracer::math::{Bits, Ray, Rgb, Vec3};
-use pathmark_tracer::sampling::{Purpose, SampleKey};
+use pathmark_tracer::sampling::Purpose;
 use pathmark_tracer::scene::SUBPIXELS;
 
 /// Places for waiting rays, twice as many as can wait: a load may start at any ray and always has full length.
@@ -20,11 +20,11 @@ pub(super) struct Supply<V: Float> {
     /// Origins and directions.
     rays: [[V::One; SIZE]; 6],
     /// The words that all random numbers of a sample share.
-    words: [[u64; SIZE]; 4],
+    words: [[u64; SIZE]; 2],
     /// Window slot of the next ray's sample; the slots of the others follow.
     slot: u64,
-    /// For the rays that are being made: columns, rows, pixels, samples, and the two joined words.
-    keys: [[u64; MOST_LANES]; 6],
+    /// For the rays that are being made: columns, rows, pixels and samples.
+    keys: [[u64; MOST_LANES]; 4],
     /// Index of the next ray.
     first: usize,
     /// Number of waiting rays.
@@ -35,9 +35,9 @@ impl<V: Float> Supply<V> {
     pub(super) fn new() -> Self {
         Self {
             rays: [[V::One::default(); SIZE]; 6],
-            words: [[0; SIZE]; 4],
+            words: [[0; SIZE]; 2],
             slot: 0,
-            keys: [[0; MOST_LANES]; 6],
+            keys: [[0; MOST_LANES]; 4],
             first: 0,
             count: 0,
         }
@@ -67,7 +67,8 @@ impl<V: Float> Apart for Produce<'_, '_, '_, V> {
 struct Batch<V: Float> {
     pixel: [V; 2],
     subpixel: V,
-    words: PathWords<V::Bits>,
+    /// The words of the positions in the pixels.
+    film: PathWords<V::Bits>,
     count: usize,
 }
 
@@ -115,29 +116,22 @@ impl Lanes {
         while supply.count < V::LANES {
             let Some(Handed { first, count }) = window.hand_out(V::LANES - supply.count) else { break };
             let pixel = first.y * self.width + first.x;
-            let [columns, rows, pixels, samples, ..] = &mut supply.keys;
+            let [columns, rows, pixels, samples] = &mut supply.keys;
             same(columns, supply.count, count, first.x);
             same(rows, supply.count, count, first.y);
             same(pixels, supply.count, count, pixel);
             for (word, sample) in samples[supply.count..][..count].iter_mut().zip(first.sample..) {
                 *word = sample.into();
             }
-            if self.sampler.is_spread() {
-                for k in 0..count {
-                    let key = SampleKey { seed: self.seed, pixel, sample: first.sample + k as u32 };
-                    [supply.keys[4][supply.count + k], supply.keys[5][supply.count + k]] = self.sampler.joined(key);
-                }
-            }
             supply.count += count;
         }
         let none = V::Bits::splat(0);
-        let [columns, rows, pixels, samples, film, first] = &supply.keys;
+        let [columns, rows, pixels, samples] = &supply.keys;
         let samples = V::Bits::load(samples);
-        let joined = [V::Bits::load(film), V::Bits::load(first)];
-        let words = self.sampler.words(self.seed, V::Bits::load(pixels), samples, joined);
+        let [film, words] = self.sampler.words(self.seed, V::Bits::load(pixels), samples);
         let subpixel = V::number(samples & V::Bits::splat(u64::from(SUBPIXELS - 1)));
         let pixel = [V::number(V::Bits::load(columns)), V::number(V::Bits::load(rows))];
-        let batch = Batch { pixel, subpixel, words, count: supply.count };
+        let batch = Batch { pixel, subpixel, film, count: supply.count };
         if self.rules.camera_rays > 1 && batch.count > 0 {
             let seen = self.extra_camera_rays(&batch, scratch, counts);
             for lane in 0..batch.count {
@@ -153,14 +147,12 @@ impl Lanes {
         direction.z.store(&mut supply.rays[5]);
         words.path.store(&mut supply.words[0]);
         words.sample.store(&mut supply.words[1]);
-        words.joined[0].store(&mut supply.words[2]);
-        words.joined[1].store(&mut supply.words[3]);
     }
 
     /// The camera rays with that number, one for each sample of the batch.
     #[inline(always)]
     fn camera_rays<V: Float>(&self, batch: &Batch<V>, number: V::Bits) -> Ray<V> {
-        let film = self.sampler.pair::<V>(&batch.words, V::Bits::splat(0), number, Purpose::Film);
+        let film = self.sampler.pair::<V>(&batch.film, V::Bits::splat(0), number, Purpose::Film);
         self.view.rays(batch.pixel, batch.subpixel, film)
     }
 
@@ -215,13 +207,11 @@ impl Lanes {
                 direction.z.fill(mask, &rays[5][first..]),
             ),
         };
-        let PathWords { path, sample, joined } = packet.words;
+        let PathWords { path, sample } = packet.words;
         let words = &supply.words;
         packet.words.path = path.fill(mask, &words[0][first..]);
         if self.sampler.is_spread() {
             packet.words.sample = sample.fill(mask, &words[1][first..]);
-            packet.words.joined[0] = joined[0].fill(mask, &words[2][first..]);
-            packet.words.joined[1] = joined[1].fill(mask, &words[3][first..]);
         }
         for lane in LanesOf(taken) {
             packet.slots[lane] = supply.slot;

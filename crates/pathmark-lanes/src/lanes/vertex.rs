@@ -140,7 +140,7 @@ impl Lanes {
             return 0;
         }
         let survival = self.rules.roulette.chance(packet.throughput, vertex.albedo);
-        let [number, _] = self.sampler.pair::<V>(&packet.words, vertex.number, packet.branch, Purpose::Roulette);
+        let number = self.sampler.number::<V>(&packet.words, vertex.number, packet.branch, Purpose::Roulette);
         let raised = packet.throughput * (V::splat(1.0) / survival);
         packet.throughput = Rgb::select(begun, raised, packet.throughput);
         (begun & survival.le(number)).bits()

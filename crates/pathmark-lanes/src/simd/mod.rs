@@ -8,14 +8,25 @@
 //! To add an instruction set: write its file with types that implement [`Float`] and [`Words`], and a line in
 //! `levels!`.
 
-/// Tables that reverse the bits of words, for processors that shuffle bytes by a table: half bytes with reversed bits,
-/// in the upper half of a byte and in the lower, and the bytes of two words in reverse order.
+/// Half bytes with reversed bits, in the upper half of a byte and in the lower, for processors that shuffle bytes by a
+/// table.
 #[cfg(target_arch = "x86_64")]
-const REVERSED: [[i8; 16]; 3] = [
+const REVERSED: [[i8; 16]; 2] = [
     [0, -128, 64, -64, 32, -96, 96, -32, 16, -112, 80, -48, 48, -80, 112, -16],
     [0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15],
-    [7, 6, 5, 4, 3, 2, 1, 0, 15, 14, 13, 12, 11, 10, 9, 8],
 ];
+
+/// The bytes of two words in reverse order.
+#[cfg(target_arch = "x86_64")]
+const SWAPPED: [i8; 16] = [7, 6, 5, 4, 3, 2, 1, 0, 15, 14, 13, 12, 11, 10, 9, 8];
+
+/// The bytes of the lower halves of two words in reverse order, and zeros in place of the upper halves.
+#[cfg(target_arch = "x86_64")]
+const SWAPPED_LOWER: [i8; 16] = [3, 2, 1, 0, -1, -1, -1, -1, 11, 10, 9, 8, -1, -1, -1, -1];
+
+/// The bytes of four words of 32 bits in reverse order.
+#[cfg(target_arch = "x86_64")]
+const SWAPPED_HALVES: [i8; 16] = [3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12];
 
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 #[macro_use]
@@ -78,6 +89,8 @@ pub trait Words<M>: Bits {
 pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     /// Words of 64 bits, as many as there are numbers.
     type Bits: Words<Self::Mask>;
+    /// As many words of 32 bits, or of 64 if a number takes more than 32 digits or the processor has no such registers.
+    type Digits: Bits;
     type One: Number;
     /// One register of the same instruction set in single precision.
     type Single: Float<One = f32>;
@@ -202,6 +215,13 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     fn number(bits: Self::Bits) -> Self;
     /// The leading bits of a word as a number in [0, 1), as many as the significand has digits: exact, and never 1.
     fn unit(bits: Self::Bits) -> Self;
+    /// The lower halves of words and their upper halves, each in the lower 32 bits.
+    fn halves(bits: Self::Bits) -> [Self::Digits; 2];
+    /// `yes` where the mask holds, `no` elsewhere.
+    #[must_use]
+    fn choose_digits(mask: Self::Mask, yes: Self::Digits, no: Self::Digits) -> Self::Digits;
+    /// Binary digits, the first in the lowest bit, as a number in [0, 1): as many digits as the significand has.
+    fn fraction(digits: Self::Digits) -> Self;
     /// Prefetches the memory at an address, which need not be valid.
     #[inline(always)]
     fn ask_for(_address: *const i8) {}

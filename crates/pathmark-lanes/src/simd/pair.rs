@@ -81,6 +81,7 @@ impl<B: Bits> Bits for Pair<B> {
         times_low(other);
         down_by(count);
         reversed();
+        mirrored();
     }
     #[inline(always)]
     fn splat(word: u64) -> Self {
@@ -197,6 +198,7 @@ impl<M: PairMask, B: Words<M::Half>> Words<M> for Pair<B> {
 
 impl<V: Float<Mask: HalfMask>> Float for Pair<V> {
     type Bits = Pair<V::Bits>;
+    type Digits = Pair<V::Digits>;
     type One = V::One;
     type Single = V::Single;
     type Register = V;
@@ -255,6 +257,19 @@ impl<V: Float<Mask: HalfMask>> Float for Pair<V> {
     #[inline(always)]
     fn unit(bits: Self::Bits) -> Self {
         Self(V::unit(bits.0), V::unit(bits.1))
+    }
+    #[inline(always)]
+    fn halves(bits: Self::Bits) -> [Self::Digits; 2] {
+        let ([a, b], [c, d]) = (V::halves(bits.0), V::halves(bits.1));
+        [Pair(a, c), Pair(b, d)]
+    }
+    #[inline(always)]
+    fn choose_digits(mask: Self::Mask, yes: Self::Digits, no: Self::Digits) -> Self::Digits {
+        Pair(V::choose_digits(mask.0, yes.0, no.0), V::choose_digits(mask.1, yes.1, no.1))
+    }
+    #[inline(always)]
+    fn fraction(digits: Self::Digits) -> Self {
+        Self(V::fraction(digits.0), V::fraction(digits.1))
     }
     #[inline(always)]
     fn ask_for(address: *const i8) {

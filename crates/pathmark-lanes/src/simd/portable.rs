@@ -214,6 +214,7 @@ macro_rules! float {
 
         impl Float for Plain<$Float> {
             type Bits = Plain<u64>;
+            type Digits = Plain<u64>;
             type One = $Float;
             type Single = Plain<f32>;
             type Register = Self;
@@ -258,6 +259,18 @@ macro_rules! float {
             #[inline(always)]
             fn unit(bits: Plain<u64>) -> Self {
                 each!(k => $unit(bits.0[k]))
+            }
+            #[inline(always)]
+            fn halves(bits: Plain<u64>) -> [Plain<u64>; 2] {
+                [bits, bits.down::<32>()]
+            }
+            #[inline(always)]
+            fn choose_digits(mask: Plain<bool>, yes: Plain<u64>, no: Plain<u64>) -> Plain<u64> {
+                Plain::<u64>::choose(mask, yes, no)
+            }
+            #[inline(always)]
+            fn fraction(digits: Plain<u64>) -> Self {
+                Self::unit(digits.reversed())
             }
             #[inline(never)]
             fn apart<W: Apart>(work: W) -> W::Output {

@@ -68,7 +68,7 @@ macro_rules! operator {
 macro_rules! register {
     (
         $(#[$about:meta])*
-        $Type:ident($isa:ident::$Raw:ident) = $lanes:literal $One:ident, $Mask:ident, $Bits:ty, $Single:ty;
+        $Type:ident($isa:ident::$Raw:ident) = $lanes:literal $One:ident, $Mask:ident, $Bits:ty, $Digits:ty, $Single:ty;
         splat $splat:ident, load $load:ident, store $store:ident,
         add $add:ident, sub $sub:ident, mul $mul:ident, div $div:ident, sqrt $sqrt:ident;
         neg($opposite:ident) = $neg:expr;
@@ -144,6 +144,7 @@ macro_rules! register {
 
         impl crate::simd::Float for $Type {
             type Bits = $Bits;
+            type Digits = $Digits;
             type One = $One;
             type Single = $Single;
             type Register = Self;

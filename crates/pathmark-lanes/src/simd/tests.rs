@@ -127,6 +127,7 @@ impl Work for Operations {
                     ("down", v.down::<41>(), x >> 41),
                     ("down by", v.down_by(count), x >> (y & 63)),
                     ("reversed", v.reversed(), x.reverse_bits()),
+                    ("mirrored", v.mirrored(), (x as u32).reverse_bits().into()),
                     ("choice", V::Bits::choose(v.equal(w), v, w), if x == y { x } else { y }),
                 ] {
                     assert_eq!(found.word(lane), expected, "{what} of {x:x} and {y:x}");
@@ -139,11 +140,50 @@ impl Work for Operations {
                 assert_eq!(less, x >> 1 < y >> 1, "{x:x} {y:x}");
             }
         }
+        digits_are_those_of_words::<V>();
         lanes_move::<V>();
         lanes_are_packed::<V>();
         lanes_are_packed::<V::Single>();
         least_keys_come_last::<V>();
         least_keys_come_last::<V::Single>();
+    }
+}
+
+/// Checks the operations on digits: their lower 32 bits are those of words.
+#[inline(always)]
+fn digits_are_those_of_words<V: Float>() {
+    for shift in 0..8 {
+        let (a, b) = (words(0), words(shift));
+        let (v, w) = (V::Bits::load(&a), V::Bits::load(&b));
+        let ([low, x], [_, y]) = (V::halves(v), V::halves(w));
+        let count = y & V::Digits::splat(31);
+        let choice = V::choose_digits(v.equal(w), low, y);
+        for lane in 0..V::LANES {
+            let [lower, first, second] = [a[lane] as u32, (a[lane] >> 32) as u32, (b[lane] >> 32) as u32];
+            for (what, found, expected) in [
+                ("lower half", low, lower),
+                ("upper half", x, first),
+                ("sum", low.plus(y), lower.wrapping_add(second)),
+                ("product", low.times(y), lower.wrapping_mul(second)),
+                ("product of lower halves", low.times_low(y), lower.wrapping_mul(second)),
+                ("and", x & y, first & second),
+                ("or", x | y, first | second),
+                ("exclusive or", x ^ y, first ^ second),
+                ("up", x.up::<17>(), first << 17),
+                ("down", x.down::<11>(), first >> 11),
+                ("down by", x.down_by(count), first >> (second & 31)),
+                ("mirrored", low.mirrored(), lower.reverse_bits()),
+                ("choice", choice, if a[lane] == b[lane] { lower } else { second }),
+            ] {
+                // Single precision has room for 24 digits.
+                let found = found & V::Digits::splat(u32::MAX.into());
+                for (found, expected) in [(found, expected), (found.down::<24>(), expected >> 24)] {
+                    let fraction = V::fraction(found & V::Digits::splat((1 << 24) - 1)).lane(lane);
+                    let expected = f64::from((expected & ((1 << 24) - 1)).reverse_bits()) / 4_294_967_296.0;
+                    assert!(same(fraction, expected), "{what} of {first:x}, {lower:x} and {second:x}: {fraction}");
+                }
+            }
+        }
     }
 }
 

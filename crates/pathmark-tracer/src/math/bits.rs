@@ -2,7 +2,8 @@
 
 use std::ops::{BitAnd, BitOr, BitXor};
 
-/// 64 bits, or several such words side by side.
+/// 64 bits, or several such words side by side. Registers of 32-bit words are for work that needs only the lower halves
+/// of words: they have 32 bits wherever the descriptions below say 64.
 pub trait Bits: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self> {
     /// The same word in every lane.
     fn splat(word: u64) -> Self;
@@ -12,7 +13,7 @@ pub trait Bits: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Out
     /// The product modulo 2^64.
     #[must_use]
     fn times(self, other: Self) -> Self;
-    /// The full 64-bit product of the lower 32 bits of both.
+    /// The full 64-bit product of the lower 32 bits of both; words of 32 bits have its lower half.
     #[must_use]
     fn times_low(self, other: Self) -> Self;
     /// Shifted towards the higher bits by `N` < 64.
@@ -27,6 +28,12 @@ pub trait Bits: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Out
     /// The bits in reverse order.
     #[must_use]
     fn reversed(self) -> Self;
+    /// The lower 32 bits in reverse order, and no others.
+    #[must_use]
+    #[inline(always)]
+    fn mirrored(self) -> Self {
+        self.up::<32>().reversed()
+    }
 }
 
 impl Bits for u64 {

@@ -23,8 +23,8 @@
 //! polynomial in Niederreiter's construction. Of 4^m samples, those of a subpixel are then a (1, m-1, 4)-net in base 4,
 //! in the four numbers together.
 
-use super::burley;
 pub use super::burley::digits;
+use super::burley::{self, Seed};
 use super::independent::mix;
 use super::owen::shuffle;
 use super::{Address, Purpose, Sampler};
@@ -34,16 +34,19 @@ use crate::math::{Bits, unit};
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Sobol;
 
-/// Multiplies sixteen elements of the field of four by ω. An element is two bits: the lower is 1, the higher ω. In this
-/// field, ω² = ω + 1.
+/// The elements of the field of four times ω. An element is two bits: the lower is 1, the higher ω. In this field,
+/// ω² = ω + 1.
+const TIMES_OMEGA: [u32; 4] = [0, 2, 3, 1];
+
+/// Multiplies sixteen elements by ω.
 #[inline(always)]
-const fn times_omega(elements: u32) -> u32 {
-    let higher = elements >> 1;
-    higher & LOWER | ((elements ^ higher) & LOWER) << 1
+fn times_omega<B: Bits>(elements: B) -> B {
+    let higher = elements.down::<1>();
+    higher & B::splat(LOWER) | ((elements ^ higher) & B::splat(LOWER)).up::<1>()
 }
 
 /// The lower bit of each element.
-const LOWER: u32 = 0x5555_5555;
+const LOWER: u64 = 0x5555_5555;
 
 /// Both bits of the elements `place`, `place + 3`, ...
 pub const fn each_third(place: u32) -> u32 {
@@ -55,18 +58,26 @@ pub const fn each_third(place: u32) -> u32 {
     mask
 }
 
+/// The results of [`each_third`].
+const THIRDS: [u64; 3] = [each_third(0) as u64, each_third(1) as u64, each_third(2) as u64];
+
+#[inline(always)]
+fn third<B: Bits>(elements: B, place: usize) -> B {
+    elements & B::splat(THIRDS[place])
+}
+
 /// Element j times ω^j.
 #[inline(always)]
-fn times_powers(elements: u32) -> u32 {
+fn times_powers<B: Bits>(elements: B) -> B {
     let once = times_omega(elements);
-    elements & each_third(0) | once & each_third(1) | (elements ^ once) & each_third(2)
+    third(elements, 0) | third(once, 1) | third(elements ^ once, 2)
 }
 
 /// Element j divided by ω^j.
 #[inline(always)]
-fn over_powers(elements: u32) -> u32 {
+fn over_powers<B: Bits>(elements: B) -> B {
     let once = times_omega(elements);
-    elements & each_third(0) | (elements ^ once) & each_third(1) | once & each_third(2)
+    third(elements, 0) | third(elements ^ once, 1) | third(once, 2)
 }
 
 /// Pascal's triangle modulo 2 applied to sixteen elements: the Kronecker product of four matrices (1 1; 0 1).
@@ -78,17 +89,17 @@ fn pascal_of_elements<B: Bits>(elements: B) -> B {
     elements ^ elements.down::<16>()
 }
 
-/// The digits of Sobol's second dimension, the first in the lowest bit: the index times Pascal's triangle of bits. (The first dimension
-/// is the index itself.)
+/// The digits of Sobol's second dimension, the first in the lowest bit: the index times Pascal's triangle of bits. (The
+/// first dimension is the index itself.)
 #[inline(always)]
 fn pascal<B: Bits>(index: B) -> B {
-    pascal_of_elements(index ^ index.down::<1>() & B::splat(u64::from(LOWER)))
+    pascal_of_elements(index ^ index.down::<1>() & B::splat(LOWER))
 }
 
 /// The index times Pascal's triangle to the power ω. Its entries are those of the triangle times ω^(column - row).
 #[inline(always)]
-fn pascal_to_omega(index: u32) -> u32 {
-    over_powers(pascal_of_elements(u64::from(times_powers(index))) as u32)
+fn pascal_to_omega<B: Bits>(index: B) -> B {
+    over_powers(pascal_of_elements(times_powers(index)))
 }
 
 /// The coefficients of the fifth dimension's first digit, as one mask for each bit of the products. They follow the
@@ -97,9 +108,9 @@ pub const SUBPIXEL: [u32; 2] = {
     let coefficients = [1, 2, 0, 2, 1];
     let (mut masks, mut place) = ([0; 2], 0);
     while place < 16 {
-        let one = coefficients[place % 5];
+        let one: u32 = coefficients[place % 5];
         // The images of an element's two bits: one times 1 and one times ω.
-        let (lower, higher) = (one, times_omega(one) & 3);
+        let (lower, higher) = (one, TIMES_OMEGA[one as usize]);
         let mut bit = 0;
         while bit < 2 {
             masks[bit] |= (lower >> bit & 1 | (higher >> bit & 1) << 1) << (2 * place);
@@ -125,15 +136,51 @@ pub const ORDERS: [u8; 24] = {
     orders
 };
 
+/// [`ORDERS`] in words, so that lanes need no table.
+const ORDER_WORDS: [u64; 3] = {
+    let (mut words, mut place) = ([0; 3], 0);
+    while place < ORDERS.len() {
+        words[place / 8] |= (ORDERS[place] as u64) << (8 * (place % 8));
+        place += 1;
+    }
+    words
+};
+
+/// The subpixel of a sample in the order with that number.
+#[inline(always)]
+fn subpixel<B: Bits>(order: B, sample: B) -> B {
+    let place = (order & B::splat(7)).up::<3>() | (sample & B::splat(3)).up::<1>();
+    let [first, second, third] = ORDER_WORDS;
+    let word = order.down::<3>();
+    let is_second = (word & B::splat(1)).times_low(B::splat(3));
+    let is_third = word.down::<1>().times_low(B::splat(3));
+    let found = B::splat(first).down_by(place)
+        ^ B::splat(first ^ second).down_by(place) & is_second
+        ^ B::splat(first ^ third).down_by(place) & is_third;
+    found & B::splat(3)
+}
+
+/// The first digit of the fifth dimension: the sums of the bits in each mask of [`SUBPIXEL`], modulo 2.
+#[inline(always)]
+fn fifth<B: Bits>(place: B) -> B {
+    let [lower, higher] = SUBPIXEL;
+    // The sums of both halves; a half's bits do not reach the lowest bit of the other.
+    let sums = place & B::splat(u64::from(lower)) | (place & B::splat(u64::from(higher))).up::<32>();
+    let sums = sums ^ sums.down::<16>();
+    let sums = sums ^ sums.down::<8>();
+    let sums = sums ^ sums.down::<4>();
+    let sums = sums ^ sums.down::<2>();
+    let sums = sums ^ sums.down::<1>();
+    sums & B::splat(1) | sums.down::<31>() & B::splat(2)
+}
+
 /// A sample's position in the order that the leading uses share. Groups of four are shuffled. In its group the sample
 /// gets the member whose fifth dimension starts with the sample's subpixel.
 #[inline(always)]
-fn leading(sample: u32, [a, b]: [u64; 2]) -> u32 {
-    let fours = (shuffle(u64::from(sample >> 2), [a, b]) as u32) << 2;
-    let order = ORDERS[(((a >> 32) * ORDERS.len() as u64) >> 32) as usize];
-    let subpixel = u32::from(order >> (2 * (sample & 3))) & 3;
-    let [lower, higher] = SUBPIXEL.map(|mask| (fours & mask).count_ones() & 1);
-    fours | subpixel ^ lower ^ higher << 1
+fn leading<B: Bits>(sample: B, [a, b]: [B; 2]) -> B {
+    let fours = shuffle(sample.down::<2>(), [a, b]).up::<2>() & B::splat(u64::from(u32::MAX));
+    let order = a.down::<32>().times_low(B::splat(ORDERS.len() as u64)).down::<32>();
+    fours | subpixel(order, sample) ^ fifth(fours)
 }
 
 /// The hash of seed and pixel that all random numbers of a pixel share.
@@ -145,22 +192,35 @@ pub fn pixel<B: Bits>(seed: u64, pixel: B) -> B {
 /// A sample's positions in the order that the leading uses share: for the film, and for the direction or light at the
 /// first vertex.
 #[inline(always)]
-pub fn joined(pixel: u64, sample: u32) -> [u32; 2] {
+pub fn joined<B: Bits>(pixel: B, sample: B) -> [B; 2] {
     // No dimension is this large, so no other key is made from these values.
-    let place = leading(sample, [mix(pixel ^ u64::MAX), mix(pixel ^ (u64::MAX - 1))]);
+    let place = leading(sample, [mix(pixel ^ B::splat(u64::MAX)), mix(pixel ^ B::splat(u64::MAX - 1))]);
     [place, pascal_to_omega(place)]
 }
 
-/// The position in the use's own order of a sample with these digits ([`digits`]).
+/// The seed of a use's own order.
 #[inline(always)]
-pub fn own_place<B: Bits>(key: B, digits: B) -> B {
-    burley::shuffle(digits, mix(key ^ B::splat(1)))
+pub fn order<B: Bits>(key: B) -> B {
+    mix(key ^ B::splat(1))
 }
 
-/// The two numbers at a position of the sequence, scrambled for a use, as 64-bit fractions.
+/// The position in the order with that seed of a sample with these digits ([`digits`]).
 #[inline(always)]
-pub fn fractions<B: Bits>(key: B, place: B) -> [B; 2] {
-    [burley::scramble(place, key).reversed(), burley::scramble(pascal(place), key.down::<32>()).reversed()]
+pub fn own_place<B: Bits>(order: Seed<B>, digits: B) -> B {
+    burley::shuffle(digits, order)
+}
+
+/// The scrambled digits of the first number at a position of the sequence, the first digit in the lowest bit. The seed
+/// is the use's key.
+#[inline(always)]
+pub fn first<B: Bits>(place: B, seed: Seed<B>) -> B {
+    burley::scramble(place, seed)
+}
+
+/// The digits of the second number. The seed is the upper half of the use's key.
+#[inline(always)]
+pub fn second<B: Bits>(place: B, seed: Seed<B>) -> B {
+    burley::scramble(pascal(place), seed)
 }
 
 impl Sampler for Sobol {
@@ -170,12 +230,13 @@ impl Sampler for Sobol {
         // Constant along a path, so the compiler moves it out of the loop over bounces.
         let pixel = pixel(at.key.seed, u64::from(at.key.pixel));
         let key = mix(pixel ^ dimension);
+        let sample = u64::from(at.key.sample);
         let place = match (at.bounce, at.branch, at.purpose) {
-            (0, _, Purpose::Film) => u64::from(joined(pixel, at.key.sample)[0]),
-            (1, 0, Purpose::Bsdf | Purpose::Light) => u64::from(joined(pixel, at.key.sample)[1]),
-            _ => own_place(key, digits(u64::from(at.key.sample))),
+            (0, _, Purpose::Film) => joined(pixel, sample)[0],
+            (1, 0, Purpose::Bsdf | Purpose::Light) => joined(pixel, sample)[1],
+            _ => own_place([order(key), order(key) >> 16], digits(sample)),
         };
-        fractions(key, place).map(unit)
+        [first(place, [key, key >> 16]), second(place, [key >> 32, key >> 48])].map(|digits| unit(digits.reversed()))
     }
 }
 
@@ -201,14 +262,30 @@ mod tests {
     /// Powers add up, and the field's characteristic is 2.
     #[test]
     fn powers_of_pascals_triangle_add_up() {
-        for index in (0..1000).chain((0..32).map(|k| 1 << k)).chain([u32::MAX, 0xDEAD_BEEF]) {
+        for index in (0..1000_u64).chain((0..32).map(|k| 1 << k)).chain([u32::MAX.into(), 0xDEAD_BEEF]) {
             let twice = pascal_to_omega(pascal_to_omega(index));
             assert_eq!(twice, index, "ω + ω = 0");
-            let once = |index: u32| pascal_of_elements(u64::from(index)) as u32;
-            assert_eq!(once(pascal_to_omega(index)), pascal_to_omega(once(index)));
+            assert_eq!(pascal_of_elements(pascal_to_omega(index)), pascal_to_omega(pascal_of_elements(index)));
         }
-        assert_eq!(pascal_to_omega(0b01_00), 0b01_10, "its first row is 1, ω, ω², ...");
-        assert_eq!(pascal_to_omega(0b01_00_00), 0b01_00_11);
+        assert_eq!(pascal_to_omega(0b01_00_u64), 0b01_10, "its first row is 1, ω, ω², ...");
+        assert_eq!(pascal_to_omega(0b01_00_00_u64), 0b01_00_11);
+    }
+
+    /// Both multiplications by ω agree, and so do the orders in the table and in words.
+    #[test]
+    fn words_agree_with_tables() {
+        for element in 0..4_u64 {
+            assert_eq!(times_omega(element), u64::from(TIMES_OMEGA[element as usize]));
+        }
+        for (number, order) in (0_u64..).zip(ORDERS) {
+            for sample in 0..8_u64 {
+                assert_eq!(subpixel(number, sample), u64::from(order >> (2 * (sample & 3)) & 3));
+            }
+        }
+        for place in (0..32).map(|k| 1_u64 << k).chain((0..1000_u64).map(|k| mix(k) >> 32)) {
+            let [lower, higher] = SUBPIXEL.map(|mask| u64::from((place as u32 & mask).count_ones() % 2));
+            assert_eq!(fifth(place), lower | higher << 1);
+        }
     }
 
     /// The table has all 24 orders of four samples.

@@ -3,11 +3,11 @@
 use super::single::F32x8;
 use super::{Mask4, U64x4, spread, x86};
 use crate::simd::register::with_lane;
-use crate::simd::{Float, Table};
+use crate::simd::{Float, Table, Words};
 use pathmark_tracer::math::{Bits, Real};
 
 register! {
-    F64x4(x86::__m256d) = 4 f64, Mask4, U64x4, F32x8;
+    F64x4(x86::__m256d) = 4 f64, Mask4, U64x4, U64x4, F32x8;
     splat _mm256_set1_pd, load _mm256_loadu_pd, store _mm256_storeu_pd,
     add _mm256_add_pd, sub _mm256_sub_pd, mul _mm256_mul_pd, div _mm256_div_pd, sqrt _mm256_sqrt_pd;
     neg(x) = x86::_mm256_xor_pd(x, x86::_mm256_set1_pd(-0.0));
@@ -51,6 +51,15 @@ register! {
         }
         fn unit(bits: U64x4) -> Self {
             Self::number(bits.down::<11>()) * Self::splat(1.0 / 9_007_199_254_740_992.0)
+        }
+        fn halves(bits: U64x4) -> [U64x4; 2] {
+            [bits, bits.down::<32>()]
+        }
+        fn choose_digits(mask: Mask4, yes: U64x4, no: U64x4) -> U64x4 {
+            U64x4::choose(mask, yes, no)
+        }
+        fn fraction(digits: U64x4) -> Self {
+            Self::unit(digits.reversed())
         }
         fn rows(table: &Table, rows: Self) -> [Self; 4] {
             let mut numbers = [0; 4];

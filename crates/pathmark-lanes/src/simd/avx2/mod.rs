@@ -9,7 +9,7 @@ mod double;
 mod single;
 
 use super::pair::{HalfMask, Pair, PairMask};
-use super::{Apart, Float, Mask, Precision, REVERSED, Words, Work};
+use super::{Apart, Float, Mask, Precision, REVERSED, SWAPPED, SWAPPED_HALVES, SWAPPED_LOWER, Words, Work};
 use double::F64x4;
 use pathmark_tracer::math::Bits;
 use single::F32x8;
@@ -24,6 +24,10 @@ instruction_set! {
 #[derive(Clone, Copy)]
 pub(super) struct U64x4(x86::__m256i);
 
+/// Eight words of 32 bits.
+#[derive(Clone, Copy)]
+pub(super) struct U32x8(x86::__m256i);
+
 /// All ones or all zeros in each lane.
 #[derive(Clone, Copy)]
 pub(super) struct Mask4(x86::__m256d);
@@ -33,6 +37,7 @@ pub(super) struct Mask4(x86::__m256d);
 pub(super) struct Mask8(x86::__m256);
 
 operator!(U64x4(x86): BitAnd bitand _mm256_and_si256, BitOr bitor _mm256_or_si256, BitXor bitxor _mm256_xor_si256);
+operator!(U32x8(x86): BitAnd bitand _mm256_and_si256, BitOr bitor _mm256_or_si256, BitXor bitxor _mm256_xor_si256);
 operator!(Mask4(x86): BitAnd bitand _mm256_and_pd, BitOr bitor _mm256_or_pd);
 operator!(Mask8(x86): BitAnd bitand _mm256_and_ps, BitOr bitor _mm256_or_ps);
 
@@ -88,12 +93,61 @@ impl Bits for U64x4 {
     }
     #[inline(always)]
     fn reversed(self) -> Self {
-        // Reverses half bytes by table, then bytes by shuffle.
-        let [low, high, swap] = [table(&REVERSED[0]), table(&REVERSED[1]), table(&REVERSED[2])];
-        let nibble = Self::splat(0x0F0F_0F0F_0F0F_0F0F);
-        let (a, b) = ((self & nibble).0, (self.down::<4>() & nibble).0);
-        let bytes = op!(x86::_mm256_or_si256(x86::_mm256_shuffle_epi8(low, a), x86::_mm256_shuffle_epi8(high, b)));
-        Self(op!(x86::_mm256_shuffle_epi8(bytes, swap)))
+        Self(op!(x86::_mm256_shuffle_epi8(reversed_bytes(self.0), table(&SWAPPED))))
+    }
+    #[inline(always)]
+    fn mirrored(self) -> Self {
+        Self(op!(x86::_mm256_shuffle_epi8(reversed_bytes(self.0), table(&SWAPPED_LOWER))))
+    }
+}
+
+/// Every byte with its bits in reverse order: half bytes by table.
+#[inline(always)]
+fn reversed_bytes(bytes: x86::__m256i) -> x86::__m256i {
+    op!({
+        let (low, high, nibble) = (table(&REVERSED[0]), table(&REVERSED[1]), x86::_mm256_set1_epi8(0x0F));
+        let (a, b) =
+            (x86::_mm256_and_si256(bytes, nibble), x86::_mm256_and_si256(x86::_mm256_srli_epi64::<4>(bytes), nibble));
+        x86::_mm256_or_si256(x86::_mm256_shuffle_epi8(low, a), x86::_mm256_shuffle_epi8(high, b))
+    })
+}
+
+impl Bits for U32x8 {
+    #[inline(always)]
+    fn splat(word: u64) -> Self {
+        Self(op!(x86::_mm256_set1_epi32(word as i32)))
+    }
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        Self(op!(x86::_mm256_add_epi32(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        Self(op!(x86::_mm256_mullo_epi32(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn times_low(self, other: Self) -> Self {
+        self.times(other)
+    }
+    #[inline(always)]
+    fn up<const N: u32>(self) -> Self {
+        Self(op!(x86::_mm256_sll_epi32(self.0, x86::_mm_cvtsi64_si128(i64::from(N)))))
+    }
+    #[inline(always)]
+    fn down<const N: u32>(self) -> Self {
+        Self(op!(x86::_mm256_srl_epi32(self.0, x86::_mm_cvtsi64_si128(i64::from(N)))))
+    }
+    #[inline(always)]
+    fn down_by(self, count: Self) -> Self {
+        Self(op!(x86::_mm256_srlv_epi32(self.0, count.0)))
+    }
+    #[inline(always)]
+    fn reversed(self) -> Self {
+        Self(op!(x86::_mm256_shuffle_epi8(reversed_bytes(self.0), table(&SWAPPED_HALVES))))
+    }
+    #[inline(always)]
+    fn mirrored(self) -> Self {
+        self.reversed()
     }
 }
 
@@ -154,19 +208,22 @@ impl PairMask for Mask8 {
     }
     #[inline(always)]
     fn of_halves(halves: Pair<Mask4>) -> Self {
-        Self(op!(x86::_mm256_castsi256_ps(narrowed(
+        Self(op!(x86::_mm256_castsi256_ps(narrowed::<LOWER>(
             x86::_mm256_castpd_si256(halves.0.0),
             x86::_mm256_castpd_si256(halves.1.0)
         ))))
     }
 }
 
-/// The lower halves of eight words.
+/// The lower halves of words, and their upper halves, as an order of quarters.
+const LOWER: i32 = 0b10_00_10_00;
+const UPPER: i32 = 0b11_01_11_01;
+
+/// The lower or the upper halves of eight words.
 #[inline(always)]
-fn narrowed(lower: x86::__m256i, upper: x86::__m256i) -> x86::__m256i {
+fn narrowed<const HALVES: i32>(lower: x86::__m256i, upper: x86::__m256i) -> x86::__m256i {
     op!({
-        let halves =
-            x86::_mm256_shuffle_ps::<0b10_00_10_00>(x86::_mm256_castsi256_ps(lower), x86::_mm256_castsi256_ps(upper));
+        let halves = x86::_mm256_shuffle_ps::<HALVES>(x86::_mm256_castsi256_ps(lower), x86::_mm256_castsi256_ps(upper));
         // The quarters are in the order lower, upper, lower, upper.
         x86::_mm256_permute4x64_epi64::<0b11_01_10_00>(x86::_mm256_castps_si256(halves))
     })

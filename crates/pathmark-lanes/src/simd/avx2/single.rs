@@ -1,13 +1,13 @@
 //! Single precision: eight numbers in a register.
 
-use super::{F64x4, Mask8, U64x4, narrowed, x86};
+use super::{F64x4, LOWER, Mask8, U32x8, U64x4, UPPER, narrowed, x86};
 use crate::simd::pair::Pair;
 use crate::simd::register::with_lane;
 use crate::simd::{Float, Mask, Table};
 use pathmark_tracer::math::{Bits, Real};
 
 register! {
-    F32x8(x86::__m256) = 8 f32, Mask8, Pair<U64x4>, Self;
+    F32x8(x86::__m256) = 8 f32, Mask8, Pair<U64x4>, U32x8, Self;
     splat _mm256_set1_ps, load _mm256_loadu_ps, store _mm256_storeu_ps,
     add _mm256_add_ps, sub _mm256_sub_ps, mul _mm256_mul_ps, div _mm256_div_ps, sqrt _mm256_sqrt_ps;
     neg(x) = x86::_mm256_xor_ps(x, x86::_mm256_set1_ps(-0.0));
@@ -52,8 +52,18 @@ register! {
             })
         }
         fn unit(bits: Pair<U64x4>) -> Self {
-            let bits = bits.down::<40>();
-            Self(op!(x86::_mm256_cvtepi32_ps(narrowed(bits.0.0, bits.1.0)))) * Self::splat(1.0 / 16_777_216.0)
+            let [_, upper] = Self::halves(bits);
+            leading(upper)
+        }
+        fn halves(bits: Pair<U64x4>) -> [U32x8; 2] {
+            let (lower, upper) = (bits.0.0, bits.1.0);
+            [U32x8(narrowed::<LOWER>(lower, upper)), U32x8(narrowed::<UPPER>(lower, upper))]
+        }
+        fn choose_digits(mask: Mask8, yes: U32x8, no: U32x8) -> U32x8 {
+            U32x8(op!(x86::_mm256_blendv_epi8(no.0, yes.0, x86::_mm256_castps_si256(mask.0))))
+        }
+        fn fraction(digits: U32x8) -> Self {
+            leading(digits.reversed())
         }
         fn rows(table: &Table, rows: Self) -> [Self; 4] {
             let mut n = [0; 8];
@@ -75,6 +85,12 @@ register! {
             })
         }
     }
+}
+
+/// The leading 24 bits of words as numbers in [0, 1).
+#[inline(always)]
+fn leading(words: U32x8) -> F32x8 {
+    F32x8(op!(x86::_mm256_cvtepi32_ps(words.down::<8>().0))) * F32x8::splat(1.0 / 16_777_216.0)
 }
 
 /// Two rows in one register.

@@ -2,11 +2,11 @@
 
 use super::single::F32x16;
 use super::{Mask8, U64x8, x86};
-use crate::simd::{Float, Table};
+use crate::simd::{Float, Table, Words};
 use pathmark_tracer::math::{Bits, Real};
 
 register! {
-    F64x8(x86::__m512d) = 8 f64, Mask8, U64x8, F32x16;
+    F64x8(x86::__m512d) = 8 f64, Mask8, U64x8, U64x8, F32x16;
     splat _mm512_set1_pd, load _mm512_loadu_pd, store _mm512_storeu_pd,
     add _mm512_add_pd, sub _mm512_sub_pd, mul _mm512_mul_pd, div _mm512_div_pd, sqrt _mm512_sqrt_pd;
     neg(x) = x86::_mm512_xor_pd(x, x86::_mm512_set1_pd(-0.0));
@@ -53,6 +53,15 @@ register! {
         }
         fn unit(bits: U64x8) -> Self {
             Self::number(bits.down::<11>()) * Self::splat(1.0 / 9_007_199_254_740_992.0)
+        }
+        fn halves(bits: U64x8) -> [U64x8; 2] {
+            [bits, bits.down::<32>()]
+        }
+        fn choose_digits(mask: Mask8, yes: U64x8, no: U64x8) -> U64x8 {
+            U64x8::choose(mask, yes, no)
+        }
+        fn fraction(digits: U64x8) -> Self {
+            Self::unit(digits.reversed())
         }
         fn rows(table: &Table, rows: Self) -> [Self; 4] {
             if let Some(columns) = &table.columns {

@@ -9,7 +9,7 @@ mod double;
 mod single;
 
 use super::pair::{HalfMask, Pair, PairMask};
-use super::{Apart, Float, Mask, Precision, REVERSED, Words, Work};
+use super::{Apart, Float, Mask, Precision, REVERSED, SWAPPED, SWAPPED_HALVES, SWAPPED_LOWER, Words, Work};
 use double::F64x8;
 use pathmark_tracer::math::Bits;
 use single::F32x16;
@@ -25,6 +25,10 @@ instruction_set! {
 #[derive(Clone, Copy)]
 pub(super) struct U64x8(x86::__m512i);
 
+/// Sixteen words of 32 bits.
+#[derive(Clone, Copy)]
+pub(super) struct U32x16(x86::__m512i);
+
 /// One bit per number.
 #[derive(Clone, Copy)]
 pub(super) struct Mask8(x86::__mmask8);
@@ -34,6 +38,7 @@ pub(super) struct Mask8(x86::__mmask8);
 pub(super) struct Mask16(x86::__mmask16);
 
 operator!(U64x8(x86): BitAnd bitand _mm512_and_si512, BitOr bitor _mm512_or_si512, BitXor bitxor _mm512_xor_si512);
+operator!(U32x16(x86): BitAnd bitand _mm512_and_si512, BitOr bitor _mm512_or_si512, BitXor bitxor _mm512_xor_si512);
 
 /// Sixteen bytes, repeated in every quarter of a register.
 #[inline(always)]
@@ -72,12 +77,61 @@ impl Bits for U64x8 {
     }
     #[inline(always)]
     fn reversed(self) -> Self {
-        // Reverses half bytes by table, then bytes by shuffle.
-        let [low, high, swap] = [table(&REVERSED[0]), table(&REVERSED[1]), table(&REVERSED[2])];
-        let nibble = Self::splat(0x0F0F_0F0F_0F0F_0F0F);
-        let (a, b) = ((self & nibble).0, (self.down::<4>() & nibble).0);
-        let bytes = op!(x86::_mm512_or_si512(x86::_mm512_shuffle_epi8(low, a), x86::_mm512_shuffle_epi8(high, b)));
-        Self(op!(x86::_mm512_shuffle_epi8(bytes, swap)))
+        Self(op!(x86::_mm512_shuffle_epi8(reversed_bytes(self.0), table(&SWAPPED))))
+    }
+    #[inline(always)]
+    fn mirrored(self) -> Self {
+        Self(op!(x86::_mm512_shuffle_epi8(reversed_bytes(self.0), table(&SWAPPED_LOWER))))
+    }
+}
+
+/// Every byte with its bits in reverse order: half bytes by table.
+#[inline(always)]
+fn reversed_bytes(bytes: x86::__m512i) -> x86::__m512i {
+    op!({
+        let (low, high, nibble) = (table(&REVERSED[0]), table(&REVERSED[1]), x86::_mm512_set1_epi8(0x0F));
+        let (a, b) =
+            (x86::_mm512_and_si512(bytes, nibble), x86::_mm512_and_si512(x86::_mm512_srli_epi64::<4>(bytes), nibble));
+        x86::_mm512_or_si512(x86::_mm512_shuffle_epi8(low, a), x86::_mm512_shuffle_epi8(high, b))
+    })
+}
+
+impl Bits for U32x16 {
+    #[inline(always)]
+    fn splat(word: u64) -> Self {
+        Self(op!(x86::_mm512_set1_epi32(word as i32)))
+    }
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        Self(op!(x86::_mm512_add_epi32(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        Self(op!(x86::_mm512_mullo_epi32(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn times_low(self, other: Self) -> Self {
+        self.times(other)
+    }
+    #[inline(always)]
+    fn up<const N: u32>(self) -> Self {
+        Self(op!(x86::_mm512_slli_epi32::<N>(self.0)))
+    }
+    #[inline(always)]
+    fn down<const N: u32>(self) -> Self {
+        Self(op!(x86::_mm512_srli_epi32::<N>(self.0)))
+    }
+    #[inline(always)]
+    fn down_by(self, count: Self) -> Self {
+        Self(op!(x86::_mm512_srlv_epi32(self.0, count.0)))
+    }
+    #[inline(always)]
+    fn reversed(self) -> Self {
+        Self(op!(x86::_mm512_shuffle_epi8(reversed_bytes(self.0), table(&SWAPPED_HALVES))))
+    }
+    #[inline(always)]
+    fn mirrored(self) -> Self {
+        self.reversed()
     }
 }
 

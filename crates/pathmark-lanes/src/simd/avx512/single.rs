@@ -1,12 +1,12 @@
 //! Single precision: sixteen numbers in a register.
 
-use super::{F64x8, Mask16, U64x8, x86};
+use super::{F64x8, Mask16, U32x16, U64x8, x86};
 use crate::simd::pair::Pair;
 use crate::simd::{Float, Table};
 use pathmark_tracer::math::{Bits, Real};
 
 register! {
-    F32x16(x86::__m512) = 16 f32, Mask16, Pair<U64x8>, Self;
+    F32x16(x86::__m512) = 16 f32, Mask16, Pair<U64x8>, U32x16, Self;
     splat _mm512_set1_ps, load _mm512_loadu_ps, store _mm512_storeu_ps,
     add _mm512_add_ps, sub _mm512_sub_ps, mul _mm512_mul_ps, div _mm512_div_ps, sqrt _mm512_sqrt_ps;
     neg(x) = x86::_mm512_xor_ps(x, x86::_mm512_set1_ps(-0.0));
@@ -48,12 +48,24 @@ register! {
             })
         }
         fn unit(bits: Pair<U64x8>) -> Self {
-            let bits = bits.down::<40>();
-            let numbers = op!({
-                let lower = x86::_mm512_castsi256_si512(x86::_mm512_cvtepi64_epi32(bits.0.0));
-                x86::_mm512_cvtepi32_ps(x86::_mm512_inserti64x4::<1>(lower, x86::_mm512_cvtepi64_epi32(bits.1.0)))
-            });
-            Self(numbers) * Self::splat(1.0 / 16_777_216.0)
+            let [_, upper] = Self::halves(bits);
+            leading(upper)
+        }
+        fn halves(bits: Pair<U64x8>) -> [U32x16; 2] {
+            op!({
+                let lower = x86::_mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+                let upper = x86::_mm512_setr_epi32(1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
+                [
+                    U32x16(x86::_mm512_permutex2var_epi32(bits.0.0, lower, bits.1.0)),
+                    U32x16(x86::_mm512_permutex2var_epi32(bits.0.0, upper, bits.1.0)),
+                ]
+            })
+        }
+        fn choose_digits(mask: Mask16, yes: U32x16, no: U32x16) -> U32x16 {
+            U32x16(op!(x86::_mm512_mask_blend_epi32(mask.0, no.0, yes.0)))
+        }
+        fn fraction(digits: U32x16) -> Self {
+            leading(digits.reversed())
         }
         fn rows(table: &Table, rows: Self) -> [Self; 4] {
             if let Some(columns) = &table.single_columns {
@@ -80,6 +92,12 @@ register! {
             })
         }
     }
+}
+
+/// The leading 24 bits of words as numbers in [0, 1).
+#[inline(always)]
+fn leading(words: U32x16) -> F32x16 {
+    F32x16(op!(x86::_mm512_cvtepi32_ps(words.down::<8>().0))) * F32x16::splat(1.0 / 16_777_216.0)
 }
 
 /// Entries of a column by their numbers.

@@ -3,11 +3,11 @@
 use super::single::F32x4;
 use super::{Mask2, U64x2, arm, spread};
 use crate::simd::register::with_lane;
-use crate::simd::{Float, Table};
+use crate::simd::{Float, Table, Words};
 use pathmark_tracer::math::{Bits, Real};
 
 register! {
-    F64x2(arm::float64x2_t) = 2 f64, Mask2, U64x2, F32x4;
+    F64x2(arm::float64x2_t) = 2 f64, Mask2, U64x2, U64x2, F32x4;
     splat vdupq_n_f64, load vld1q_f64, store vst1q_f64,
     add vaddq_f64, sub vsubq_f64, mul vmulq_f64, div vdivq_f64, sqrt vsqrtq_f64;
     neg(x) = arm::vnegq_f64(x);
@@ -21,6 +21,15 @@ register! {
     smaller(x, y) = arm::vbslq_f64(arm::vcltq_f64(x, y), x, y);
     select(mask, yes, no) = arm::vbslq_f64(mask, yes, no);
     own {
+        fn halves(bits: U64x2) -> [U64x2; 2] {
+            [bits, bits.down::<32>()]
+        }
+        fn choose_digits(mask: Mask2, yes: U64x2, no: U64x2) -> U64x2 {
+            U64x2::choose(mask, yes, no)
+        }
+        fn fraction(digits: U64x2) -> Self {
+            Self::unit(digits.reversed())
+        }
         fn fill(self, mask: Mask2, from: &[f64]) -> Self {
             let next = op!(arm::vreinterpretq_u64_f64(Self::load(from).0));
             Self::select(mask, Self(op!(arm::vreinterpretq_f64_u64(spread(mask, next)))), self)

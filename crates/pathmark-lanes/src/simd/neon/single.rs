@@ -3,11 +3,11 @@
 use super::{F64x2, Mask4, U64x2, arm, split};
 use crate::simd::pair::Pair;
 use crate::simd::register::with_lane;
-use crate::simd::{Float, Mask, Table};
-use pathmark_tracer::math::Real;
+use crate::simd::{Float, Mask, Table, Words};
+use pathmark_tracer::math::{Bits, Real};
 
 register! {
-    F32x4(arm::float32x4_t) = 4 f32, Mask4, Pair<U64x2>, Self;
+    F32x4(arm::float32x4_t) = 4 f32, Mask4, Pair<U64x2>, Pair<U64x2>, Self;
     splat vdupq_n_f32, load vld1q_f32, store vst1q_f32,
     add vaddq_f32, sub vsubq_f32, mul vmulq_f32, div vdivq_f32, sqrt vsqrtq_f32;
     neg(x) = arm::vnegq_f32(x);
@@ -21,6 +21,15 @@ register! {
     smaller(x, y) = arm::vbslq_f32(arm::vcltq_f32(x, y), x, y);
     select(mask, yes, no) = arm::vbslq_f32(mask, yes, no);
     own {
+        fn halves(bits: Pair<U64x2>) -> [Pair<U64x2>; 2] {
+            [bits, bits.down::<32>()]
+        }
+        fn choose_digits(mask: Mask4, yes: Pair<U64x2>, no: Pair<U64x2>) -> Pair<U64x2> {
+            Pair::<U64x2>::choose(mask, yes, no)
+        }
+        fn fraction(digits: Pair<U64x2>) -> Self {
+            Self::unit(digits.reversed())
+        }
         fn fill(self, mask: Mask4, from: &[f32]) -> Self {
             Self::select(mask, Self::load(from).in_order(&SPREAD[mask.bits() as usize & 15]), self)
         }
