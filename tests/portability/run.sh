@@ -111,7 +111,7 @@ files() {
     done
     for order in little big; do
         cp "tests/fuzz/corpus/ply/$order.ply" "$work/square.ply"
-        printf '%s\n' 'background = [0.1, 0.2, 0.3]' '[camera.pinhole]' 'position = [0.3, 0.2, -3.0]' 'look-at = [0.0, 0.0, 0.0]' \
+        printf '%s\n' 'about = "a square"' 'background = [0.1, 0.2, 0.3]' '[camera.pinhole]' 'position = [0.3, 0.2, -3.0]' 'look-at = [0.0, 0.0, 0.0]' \
             'field-of-view = 60.0' '[[objects]]' 'name = "square"' 'shape = { mesh = { file = "square.ply" } }' \
             'material = { diffuse = { albedo = [0.7, 0.6, 0.5] } }' >"$work/square.toml"
         set -- "$work/square.toml" --size 24x18 --spp 4
