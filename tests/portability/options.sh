@@ -25,7 +25,7 @@ deterministic() {
     done
 }
 
-scenes=($(names scenes) spheres:300 bumpy-ball:400)
+scenes=($(names scenes) spheres:300 bumpy-ball:400 spheres:30 bumpy-ball:60 spheres:1000 spheres:3 bumpy-ball:100)
 estimators=($(names estimators))
 samplers=($(deterministic))
 strategies=($(names strategies))

@@ -8,7 +8,8 @@
 #
 # PATHMARK_PORTABILITY is the folder of the emulator, of the compilers and of what they make [default: ~/.cache/pathmark-portability]. The first run
 # installs a small Debian there, whose compiler has Rust's library for many processors. PATHMARK_PARTS names what to do, some of
-# "images files tests" [default: all]. target/portability keeps the checksums of each program, so an interrupted comparison continues.
+# "images files units paths contract cases" [default: all]; the last four are tests under emulation. target/portability keeps the checksums of each
+# program, so an interrupted comparison continues.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 fail() { printf '%s\n' "$1" >&2; exit "$2"; }
@@ -25,9 +26,10 @@ root=$base/root
 repository=$PWD
 kept=$repository/target/portability
 downloads=${CARGO_HOME:-$HOME/.cargo}/registry
-parts=${PATHMARK_PARTS:-images files tests}
+known="images files units paths contract cases"
+parts=${PATHMARK_PARTS:-$known}
 for part in $parts; do
-    [[ $part =~ ^(images|files|tests)$ ]] || fail "PATHMARK_PARTS = $part: is not one of images, files, tests" 2
+    [[ " $known " == *" $part "* ]] || fail "PATHMARK_PARTS = $part: is not one of $known" 2
 done
 
 # Runs a command in the root, where the repository has its usual place. The mounts end with the command.
@@ -89,7 +91,6 @@ images() {
     [ -e "$mine.options" ] || { bash tests/portability/options.sh target/debug/pathmark >"$work/options" && mv "$work/options" "$mine.options"; }
     bash tests/portability/checksums.sh "$mine.options" "$mine" target/debug/pathmark
     within bash tests/portability/checksums.sh "$mine.options" "$theirs" "${emulated[@]}"
-    printf '\n'
     bash tests/portability/compare.sh "$mine/baseline" "$mine"/* "$theirs"/* || echo "images differ" >>"$work/differences"
 }
 
@@ -100,7 +101,7 @@ told() {
 # Files that one of both programs writes and the other reads: pictures, meshes, parts of an image, and checkpoints.
 files() {
     local kind order whole
-    printf '\n| file | here and there |\n|--|--|\n'
+    printf '| file | here and there |\n|--|--|\n'
     for kind in pfm hdr exr png ppm bmp; do
         quietly here render cornell --kernel scalar --size 24x18 --spp 4 -o "$work/here.$kind"
         quietly there render cornell --kernel scalar --size 24x18 --spp 4 -o "$work/there.$kind"
@@ -111,7 +112,7 @@ files() {
     done
     for order in little big; do
         cp "tests/fuzz/corpus/ply/$order.ply" "$work/square.ply"
-        printf '%s\n' 'background = [0.1, 0.2, 0.3]' '[camera.pinhole]' 'position = [0.3, 0.2, -3.0]' 'look-at = [0.0, 0.0, 0.0]' \
+        printf '%s\n' 'about = "a square"' 'background = [0.1, 0.2, 0.3]' '[camera.pinhole]' 'position = [0.3, 0.2, -3.0]' 'look-at = [0.0, 0.0, 0.0]' \
             'field-of-view = 60.0' '[[objects]]' 'name = "square"' 'shape = { mesh = { file = "square.ply" } }' \
             'material = { diffuse = { albedo = [0.7, 0.6, 0.5] } }' >"$work/square.toml"
         set -- "$work/square.toml" --size 24x18 --spp 4
@@ -129,13 +130,14 @@ files() {
     told "checkpoint of here, resumed there" "$(checksum there render "$@" --checkpoint "$work/ours" -o "$work/4.pfm")" "$whole"
 }
 
-tests() {
-    printf '\nTests under emulation\n'
-    within cargo test --quiet --locked --offline --target "$target" -p pathmark-tracer -p pathmark-strategy -p pathmark-lanes \
-        --lib --test equilibrium --test strategy_contract --test paths
-    # By letters: without them, the price list of the guards would be timed, too.
-    there selftest S T H P R M A
+tested() {
+    within cargo test --quiet --locked --offline --target "$target" -p pathmark-tracer -p pathmark-strategy -p pathmark-lanes "$@"
 }
+units() { tested --lib; }
+paths() { tested --test paths --test equilibrium; }
+contract() { tested --test strategy_contract; }
+# By letters: without them, the price list of the guards would be timed, too.
+cases() { there selftest S T H P R M A; }
 
 emulated=("qemu-$architecture" -L "/usr/$tools" "/target/$target/debug/pathmark")
 prepare
@@ -147,6 +149,7 @@ trap 'rm -rf "$work"' EXIT
 touch "$work/differences"
 echo "$architecture, $(date -u +%F), commit $(git rev-parse --short=12 HEAD), $(rustc --version) here, $(within rustc --version) there"
 for part in $parts; do
+    printf '\n%s\n' "$part"
     "$part"
 done
 if [ -s "$work/differences" ]; then

@@ -135,6 +135,7 @@ impl Machine {
 /// The instruction sets of this processor that compilers choose between. Flags of the kernel are not among them: an
 /// update of the kernel changes those.
 fn instruction_sets() -> String {
+    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
     macro_rules! detected {
         ($detect:ident: $($name:tt)*) => {
             [$(($name, std::arch::$detect!($name))),*]

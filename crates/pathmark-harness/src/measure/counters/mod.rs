@@ -5,9 +5,20 @@
 //! threads saves them. That slows strategies that start many threads. Counters are therefore a setting, and rows with
 //! and without them are no repetitions of each other.
 
-// `perf_event_open` is a system call of Linux alone.
-#[cfg(target_os = "linux")]
-use perf_event::{Builder, Counter, events::Event, events::Hardware};
+// Each system has a file with the same functions. Only Linux has counters, and `perf-event` knows few
+// architectures.
+#[cfg(not(all(target_os = "linux", any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "riscv64"))))]
+mod none;
+#[cfg(all(target_os = "linux", any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "riscv64")))]
+mod perf;
+
+#[cfg(not(all(
+    target_os = "linux",
+    any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "riscv64")
+)))]
+pub(super) use none::Counters;
+#[cfg(all(target_os = "linux", any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "riscv64")))]
+pub(super) use perf::Counters;
 
 /// The counters, by name; those of a row stand in this order.
 pub(super) const COUNTERS: [&str; 4] = ["cycles", "instructions", "cache misses", "branch misses"];
@@ -44,48 +55,6 @@ pub(super) fn between(before: &Readings, after: &Readings) -> Counted {
 /// A reading of each counter; `None` where there is none.
 pub(super) type Readings = [Option<Reading>; COUNTERS.len()];
 
-/// The open counters of this thread and of threads that it starts later.
-#[cfg(target_os = "linux")]
-pub(super) struct Counters([Option<Counter>; COUNTERS.len()]);
-
-#[cfg(target_os = "linux")]
-impl Counters {
-    /// Opens those that the system grants.
-    pub(super) fn open() -> Self {
-        let events = [Hardware::CPU_CYCLES, Hardware::INSTRUCTIONS, Hardware::CACHE_MISSES, Hardware::BRANCH_MISSES];
-        Self(events.map(|event| open(event.into())))
-    }
-
-    pub(super) fn read(&mut self) -> Readings {
-        self.0.each_mut().map(|counter| {
-            let read = counter.as_mut()?.read_count_and_time().ok()?;
-            Some(Reading { events: read.count, wanted_ns: read.time_enabled, ran_ns: read.time_running })
-        })
-    }
-}
-
-#[cfg(target_os = "linux")]
-fn open(event: Event) -> Option<Counter> {
-    let mut builder = Builder::new().kind(event);
-    builder.inherit(true).enabled(true);
-    builder.build().ok()
-}
-
-/// Other systems have no such counters for programs.
-#[cfg(not(target_os = "linux"))]
-pub(super) struct Counters;
-
-#[cfg(not(target_os = "linux"))]
-impl Counters {
-    pub(super) fn open() -> Self {
-        Self
-    }
-
-    pub(super) fn read(&mut self) -> Readings {
-        Readings::default()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -99,19 +68,5 @@ mod tests {
         assert_eq!(before.since(before), None);
         let (before, after) = ([Some(before), None, Some(before), None], [Some(after), Some(after), None, None]);
         assert_eq!(between(&before, &after), [Some(1000), None, None, None]);
-    }
-
-    /// Page faults are counted in virtual machines, too. The thread touches a page that nobody has touched before.
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn later_threads_are_counted() {
-        use perf_event::events::Software;
-        let Some(faults) = open(Software::PAGE_FAULTS_MIN.into()) else { return };
-        let mut counters = Counters([Some(faults), None, None, None]);
-        let before = counters.read();
-        let touched = std::thread::spawn(|| vec![1_u8; 16 << 20].iter().map(|byte| u64::from(*byte)).sum::<u64>());
-        assert_eq!(touched.join().unwrap(), 16 << 20);
-        let [faults, ..] = between(&before, &counters.read());
-        assert!(faults.is_some_and(|faults| faults > 0), "{faults:?}");
     }
 }
