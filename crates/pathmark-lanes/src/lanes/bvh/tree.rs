@@ -142,8 +142,10 @@ impl<V: Float> Traversal<'_, V> {
             let node = self.stacks[lane].next as usize;
             boxes += u64::from(tree.counts[node]);
             let coarse = self.rays.coarse.of_lane::<V::Single>(lane);
-            let (enter, met) = coarse.enter(&tree.faces[node * 6 * lanes..], self.rays.limits[lane]);
-            self.stacks[lane].push(V::Single::load(&tree.children[node * lanes..]), enter, met);
+            // A range of known length is checked once.
+            let (faces, children) = (node * 6 * lanes, node * lanes);
+            let (enter, met) = coarse.enter(&tree.faces[faces..faces + 6 * lanes], self.rays.limits[lane]);
+            self.stacks[lane].push(V::Single::load(&tree.children[children..children + lanes]), enter, met);
         }
         self.tests.boxes += boxes;
     }
