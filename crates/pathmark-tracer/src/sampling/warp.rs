@@ -16,9 +16,7 @@ pub fn cosine_hemisphere<T: Real>([u, v]: [T; 2]) -> Vec3<T> {
 pub fn tent<T: Real>(u: T) -> T {
     let (one, two) = (T::splat(1.0), T::splat(2.0));
     let r = u * two;
-    let is_left = r.lt(one);
-    let root = T::select(is_left, r, two - r).sqrt();
-    T::select(is_left, root - one, one - root)
+    T::select(r.lt(one), r.sqrt() - one, one - (two - r).sqrt())
 }
 
 /// A point of the unit disk with density 1/π; neighbours stay neighbours (Shirley and Chiu, "A Low Distortion Map
