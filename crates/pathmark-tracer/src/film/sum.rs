@@ -71,6 +71,11 @@ impl SampleSum {
     #[inline(always)]
     pub fn add(&mut self, radiance: Rgb) {
         self.block.add(radiance);
+        self.end_block();
+    }
+
+    #[inline(always)]
+    fn end_block(&mut self) {
         if self.block.count == SAMPLE_BLOCK {
             self.carry();
         }
@@ -88,9 +93,7 @@ impl SampleSum {
                 block.add(Rgb::from(*radiance));
             }
             self.block = block;
-            if block.count == SAMPLE_BLOCK {
-                self.carry();
-            }
+            self.end_block();
             radiances = later;
         }
     }

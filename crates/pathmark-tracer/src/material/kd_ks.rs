@@ -87,6 +87,13 @@ impl KdKs {
         }
     }
 
+    /// Returns the sample with that direction.
+    #[inline(always)]
+    fn weighted<T: Real>(&self, ggx: Ggx, fresnel: T, wo: Vec3<T>, wi: Vec3<T>) -> RoughSample<T> {
+        let density = self.rough_pdf(ggx, fresnel, wo, wi);
+        RoughSample { wi, weight: self.rough(ggx, fresnel, wo, wi) * (wi.z / density), density }
+    }
+
     /// Chooses the facets with probability `chance`; the random number is rescaled to [0, 1) for the chosen part.
     #[inline(always)]
     fn choose<T: Real>([u, v]: [T; 2], chance: T) -> (T::Mask, [T; 2]) {
@@ -105,10 +112,18 @@ impl Bsdf for KdKs {
 
     #[inline(always)]
     fn sample(&self, wo: Vec3, _inside: bool, u: [f64; 2]) -> Option<BsdfSample> {
-        if let Some(sample) = self.sample_rough(wo, u) {
-            return sample.above();
-        }
         let fresnel = self.fresnel(wo);
+        if let Facets::Rough(ggx) = self.facets {
+            // A branch in place of the selection of `sample_rough`, so that only one direction is computed.
+            let wi = match self.sampling {
+                Sampling::Cosine => cosine_hemisphere(u),
+                Sampling::Vndf => match Self::choose(u, self.chance(fresnel)) {
+                    (true, u) => Ggx::mirrored(wo, ggx.visible_normal(wo, u)),
+                    (false, u) => cosine_hemisphere(u),
+                },
+            };
+            return self.weighted(ggx, fresnel, wo, wi).above();
+        }
         // Each lobe's probability is its share of the light, so the share cancels in the weight.
         let (is_mirrored, u) = Self::choose(u, fresnel);
         Some(if is_mirrored {
@@ -130,8 +145,7 @@ impl Bsdf for KdKs {
                 Vec3::select(is_facet, Ggx::mirrored(wo, ggx.visible_normal(wo, u)), cosine_hemisphere(u))
             }
         };
-        let density = self.rough_pdf(ggx, fresnel, wo, wi);
-        Some(RoughSample { wi, weight: self.rough(ggx, fresnel, wo, wi) * (wi.z / density), density })
+        Some(self.weighted(ggx, fresnel, wo, wi))
     }
 
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
