@@ -93,7 +93,7 @@ fn ratios_and_images_are_judged_and_seconds_are_not() {
     assert_eq!(orders(&told), [("reproduced", 1.0, 1.0)], "{told:?}");
     let page = fs::read_to_string(folder.path().join("here/report.html")).unwrap();
     assert!(page.contains("Replication of theirs") && page.contains("The machines side by side"), "{page}");
-    // What differs is measured a second time: only there is it as theirs.
+    // A ratio that differs is measured a second time: only there is it as theirs.
     let (first, second) = (folder.path().join("here/tiny"), folder.path().join("here/again/tiny"));
     let _ = fs::remove_dir_all(&second);
     fs::create_dir_all(&second).unwrap();

@@ -28,6 +28,7 @@ const SWAPPED_LOWER: [i8; 16] = [3, 2, 1, 0, -1, -1, -1, -1, 11, 10, 9, 8, -1, -
 #[cfg(target_arch = "x86_64")]
 const SWAPPED_HALVES: [i8; 16] = [3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12];
 
+// A compiler for one kind of processor has no instructions of the others.
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 #[macro_use]
 mod register;

@@ -39,6 +39,13 @@ impl Conductor {
         BsdfSample { wi: reflect(wo), weight: self.fresnel(wo.z), density: Density::Delta }
     }
 
+    /// Returns the sample with that facet and direction. As the facet is sampled among visible ones, the weight is F G2/G1,
+    /// at most 1.
+    #[inline(always)]
+    fn weighted<T: Real>(&self, ggx: Ggx, wo: Vec3<T>, h: Vec3<T>, wi: Vec3<T>) -> RoughSample<T> {
+        RoughSample { wi, weight: self.fresnel(dot(wo, h)) * ggx.unshadowed(wo, wi), density: ggx.pdf(wo, wi) }
+    }
+
     #[inline(always)]
     fn rough<T: Real>(&self, ggx: Ggx, wo: Vec3<T>, wi: Vec3<T>) -> Rgb<T> {
         // The facet's cosine is computed from wo + wi, so exchanging the two directions gives the same bits.
@@ -53,17 +60,17 @@ impl Bsdf for Conductor {
     /// `None` if the mirrored direction is below the surface.
     #[inline(always)]
     fn sample(&self, wo: Vec3, _inside: bool, u: [f64; 2]) -> Option<BsdfSample> {
-        self.sample_rough(wo, u).map_or_else(|| Some(self.reflected(wo)), RoughSample::above)
+        let Facets::Rough(ggx) = self.facets else { return Some(self.reflected(wo)) };
+        let (h, wi) = ggx.mirrored_at_facet(wo, u);
+        // The branch saves weight and density of what is absorbed.
+        if wi.z > 0.0 { self.weighted(ggx, wo, h, wi).above() } else { None }
     }
 
-    /// Samples visible normals; the weight is F G2/G1, at most 1.
     #[inline(always)]
     fn sample_rough<T: Real>(&self, wo: Vec3<T>, u: [T; 2]) -> Option<RoughSample<T>> {
         let Facets::Rough(ggx) = self.facets else { return None };
-        let h = ggx.visible_normal(wo, u);
-        let wi = Ggx::mirrored(wo, h);
-        let weight = self.fresnel(dot(wo, h)) * ggx.unshadowed(wo, wi);
-        Some(RoughSample { wi, weight, density: ggx.pdf(wo, wi) })
+        let (h, wi) = ggx.mirrored_at_facet(wo, u);
+        Some(self.weighted(ggx, wo, h, wi))
     }
 
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {

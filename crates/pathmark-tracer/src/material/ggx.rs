@@ -112,9 +112,10 @@ impl Ggx {
         Vec3::new(alpha * (rim * cos + stretched.x), alpha * (rim * sin + stretched.y), height).normalized()
     }
 
-    /// Returns the mirror direction of `wo` at a facet with normal `h`.
+    /// Returns the normal of a facet from [`Ggx::visible_normal`], and the mirror direction of `wo` there.
     #[inline(always)]
-    pub(super) fn mirrored<T: Real>(wo: Vec3<T>, h: Vec3<T>) -> Vec3<T> {
-        (h * (T::splat(2.0) * dot(wo, h)) - wo).normalized()
+    pub(super) fn mirrored_at_facet<T: Real>(self, wo: Vec3<T>, u: [T; 2]) -> (Vec3<T>, Vec3<T>) {
+        let h = self.visible_normal(wo, u);
+        (h, (h * (T::splat(2.0) * dot(wo, h)) - wo).normalized())
     }
 }

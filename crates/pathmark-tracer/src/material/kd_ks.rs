@@ -114,15 +114,15 @@ impl Bsdf for KdKs {
     fn sample(&self, wo: Vec3, _inside: bool, u: [f64; 2]) -> Option<BsdfSample> {
         let fresnel = self.fresnel(wo);
         if let Facets::Rough(ggx) = self.facets {
-            // A branch in place of the selection of `sample_rough`, so that only one direction is computed.
+            // Branches in place of the selections of `sample_rough`, so that only what is needed is computed.
             let wi = match self.sampling {
                 Sampling::Cosine => cosine_hemisphere(u),
                 Sampling::Vndf => match Self::choose(u, self.chance(fresnel)) {
-                    (true, u) => Ggx::mirrored(wo, ggx.visible_normal(wo, u)),
+                    (true, u) => ggx.mirrored_at_facet(wo, u).1,
                     (false, u) => cosine_hemisphere(u),
                 },
             };
-            return self.weighted(ggx, fresnel, wo, wi).above();
+            return if wi.z > 0.0 { self.weighted(ggx, fresnel, wo, wi).above() } else { None };
         }
         // Each lobe's probability is its share of the light, so the share cancels in the weight.
         let (is_mirrored, u) = Self::choose(u, fresnel);
@@ -142,7 +142,7 @@ impl Bsdf for KdKs {
             Sampling::Cosine => cosine_hemisphere(u),
             Sampling::Vndf => {
                 let (is_facet, u) = Self::choose(u, self.chance(fresnel));
-                Vec3::select(is_facet, Ggx::mirrored(wo, ggx.visible_normal(wo, u)), cosine_hemisphere(u))
+                Vec3::select(is_facet, ggx.mirrored_at_facet(wo, u).1, cosine_hemisphere(u))
             }
         };
         Some(self.weighted(ggx, fresnel, wo, wi))
