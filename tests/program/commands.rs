@@ -47,13 +47,14 @@ exec 'PROGRAM' "$@"
 "#;
 
 /// Sizes and durations of the documents, and smaller ones.
-const SMALLER: [(&str, &str); 8] = [
+const SMALLER: [(&str, &str); 9] = [
     ("512x384", "32x24"),
     ("256x192", "32x24"),
     ("160x120", "40x30"),
     ("64x48", "16x12"),
     ("--shard 1/4", "--shard 1/2"),
     ("--shard 2/4", "--shard 2/2"),
+    ("--repetitions 15", "--repetitions 2"),
     ("--max-time 2min", "--max-time 1s"),
     ("--max-time 10s", "--max-time 1s"),
 ];

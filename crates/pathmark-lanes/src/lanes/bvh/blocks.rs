@@ -290,8 +290,7 @@ impl Blocks {
         let triangles = V::One::all(&self.triangles);
         for block in leaf.triangles[0]..leaf.triangles[1] {
             let of_block = OF_TRIANGLE * V::Register::LANES;
-            let first = block as usize * of_block;
-            let block = &triangles[first..first + of_block];
+            let block = &triangles[block as usize * of_block..][..of_block];
             // No closure: on NEON it would stay a function that is called three times.
             let [a, b] = [corner::<V::Register>(block, 0, turned), corner::<V::Register>(block, 3, turned)];
             let crossing = Crossing::of([a, b, corner::<V::Register>(block, 6, turned)]);
