@@ -106,7 +106,7 @@ fn ranks_continue_the_render_of_killed_ranks() {
     }
     let mut random = Pcg64::seed_from_u64(1);
     let (mut kills, mut resumed) = (0, 0);
-    let enough = if is_thorough() { 200 } else { 4 };
+    let enough = if is_thorough() { 200 } else { 2 };
     while kills < enough || resumed == 0 {
         fs::remove_file(&checkpoint).ok();
         let image = loop {
