@@ -46,7 +46,7 @@ const TARGET: Target = Target {
     more: Vec::new,
     words: &[],
     cut: true,
-    mutations: 7000,
+    mutations: 5000,
 };
 
 /// All targets.
