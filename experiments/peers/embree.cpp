@@ -7,34 +7,23 @@
 // Prints the build time in seconds, the rays per second of each repetition, the number of rays that hit, and the sum of their distances.
 #include <embree3/rtcore.h>
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <vector>
 
+#include "rays.h"
+
 struct Start {
   float origin[3], direction[3];
 };
-
-static double seconds() {
-  using namespace std::chrono;
-  return duration<double>(steady_clock::now().time_since_epoch()).count();
-}
 
 int main(int count, char** arguments) {
   if (count < 2) return std::fprintf(stderr, "usage: embree FILE [REPETITIONS] [robust|fast]\n"), 2;
   const int repetitions = count > 2 ? std::atoi(arguments[2]) : 9;
   const bool robust = count <= 3 || std::strcmp(arguments[3], "fast") != 0;
 
-  std::FILE* file = std::fopen(arguments[1], "rb");
-  std::size_t triangles = 0, rays = 0;
-  if (!file || std::fscanf(file, "pathmark-rays 1 %zu %zu", &triangles, &rays) != 2 || std::fgetc(file) != '\n')
-    return std::fprintf(stderr, "%s: no rays of pathmark\n", arguments[1]), 2;
-  std::vector<double> numbers(9 * triangles + 7 * rays);
-  if (std::fread(numbers.data(), sizeof(double), numbers.size(), file) != numbers.size())
-    return std::fprintf(stderr, "%s: ends early\n", arguments[1]), 2;
-  std::fclose(file);
+  const auto [triangles, rays, numbers] = read_rays(arguments[1]);
 
   RTCDevice device = rtcNewDevice("threads=1,set_affinity=0");
   RTCScene scene = rtcNewScene(device);

@@ -11,18 +11,14 @@
 #define NO_THREADED_BUILDS
 #include <tiny_bvh.h>
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <vector>
 
-static const double NEAREST = 1e-4;
+#include "rays.h"
 
-static double seconds() {
-  using namespace std::chrono;
-  return duration<double>(steady_clock::now().time_since_epoch()).count();
-}
+static const double NEAREST = 1e-4;
 
 // `Corner` has at least three coordinates of the type `Number`; `Vector` has three.
 template <typename Tree, typename Ray, typename Corner, typename Vector, typename Number, typename Build>
@@ -64,14 +60,7 @@ int main(int count, char** arguments) {
   const int repetitions = count > 2 ? std::atoi(arguments[2]) : 9;
   const bool is_double = count > 3 && std::strcmp(arguments[3], "f64") == 0;
 
-  std::FILE* file = std::fopen(arguments[1], "rb");
-  std::size_t triangles = 0, rays = 0;
-  if (!file || std::fscanf(file, "pathmark-rays 1 %zu %zu", &triangles, &rays) != 2 || std::fgetc(file) != '\n')
-    return std::fprintf(stderr, "%s: no rays of pathmark\n", arguments[1]), 2;
-  std::vector<double> numbers(9 * triangles + 7 * rays);
-  if (std::fread(numbers.data(), sizeof(double), numbers.size(), file) != numbers.size())
-    return std::fprintf(stderr, "%s: ends early\n", arguments[1]), 2;
-  std::fclose(file);
+  const auto [triangles, rays, numbers] = read_rays(arguments[1]);
 
   using namespace tinybvh;
   if (is_double)
