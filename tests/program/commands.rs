@@ -3,6 +3,7 @@
 use crate::experiment::TINY;
 use crate::program::{Finished, finish, in_memory, pathmark};
 use crate::ranks::{has_launcher, launcher_named};
+use std::collections::BTreeSet;
 use std::fs::{self, Permissions};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
@@ -37,7 +38,7 @@ case $1 in
         set -- "$@" RUN
         ;;
     render) has --size || set -- "$@" --size RENDER ;;
-    inspect) ! has --pixel || has --size || set -- "$@" --size RENDER ;;
+    inspect) if has rays || has --pixel; then has --size || set -- "$@" --size RENDER; fi ;;
     price) has --size || set -- "$@" --size 32x24 ;;
     simulate) set -- "$@" --no-check ;;
     bursts) set -- "$@" --regions 2 --rounds 1 --processes 3 ;;
@@ -47,7 +48,8 @@ exec 'PROGRAM' "$@"
 "#;
 
 /// Sizes and durations of the documents, and smaller ones.
-const SMALLER: [(&str, &str); 9] = [
+const SMALLER: [(&str, &str); 10] = [
+    ("1280x720", "32x18"),
     ("512x384", "32x24"),
     ("256x192", "32x24"),
     ("160x120", "40x30"),
@@ -133,8 +135,7 @@ fn the_commands_of_the_readme_run() {
 /// Manuals and notes. Each has a folder with rows and a ledger, and another build beside it.
 #[test]
 fn every_command_of_manuals_and_notes_runs() {
-    // The tutorial has a test of its own, and so have the commands for the class (`lab.md` here, `rubric.md` in
-    // tests/grade). Those of `external.md` install another program.
+    // These have tests of their own; that of `rubric.md` is in tests/grade.
     const ELSEWHERE: [&str; 4] = ["tutorial.md", "lab.md", "rubric.md", "external.md"];
     let mut commands = 0;
     for page in pages() {
@@ -179,33 +180,133 @@ fn pages() -> Vec<PathBuf> {
     pages
 }
 
-/// Commands within sentences: their verb, options and values are the program's. None of them runs: some take hours.
+/// Words that stand for something in a sentence's command, and what they stand for here.
+const MEANT: [(&str, &str); 5] = [
+    ("SCENE", "bumpy-ball:500"),
+    ("bumpy-ball:N", "bumpy-ball:500"),
+    ("E", "0.5"),
+    ("S", "sobol"),
+    ("FOLDER...", "DIR"),
+];
+
+/// Verbs whose commands within sentences are only read. Shipped experiments, studies and self-tests take minutes to
+/// hours; other tests run them in small. `grade` and `artifact` need a folder that tests of their own make.
+const ONLY_READ: [&str; 7] = ["run", "reproduce", "selftest", "simulate", "doctor", "grade", "artifact"];
+
+/// Commands within sentences: the program understands their verb, options, values and names, and all but
+/// [`ONLY_READ`] run.
 #[test]
-fn the_commands_within_sentences_are_understood() {
+fn the_commands_within_sentences_run() {
+    // Tests of archives have the rows of one, and those of `equal-time` have pictures.
+    const ELSEWHERE: [&[&str]; 2] = [&["replicate", "DIR/rows/RUN"], &["report", "out", "--crops", "20,10,32"]];
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let (folder, mut commands) = (in_memory(), 0);
     let others = ["README.md", "results/README.md", "examples/ledgers/README.md"].map(|name| root.join(name));
-    let known = finish(pathmark(folder.path(), &["list", "experiments"])).with_code(0).out;
-    for page in pages().into_iter().chain(others) {
-        let text = fs::read_to_string(&page).unwrap();
-        for command in text.split('`').filter(|command| command.starts_with("pathmark ")) {
-            // A single letter stands for a number.
-            let is_number = |word: &str| word.len() == 1 && word.chars().all(|char| char.is_ascii_uppercase());
-            let words = command.split_whitespace().skip(1).map(|word| if is_number(word) { "1" } else { word });
-            let words: Vec<&str> = words.collect();
-            if words.iter().any(|word| ["VERB", "KIND"].contains(word)) || words[0].starts_with('-') {
-                continue;
-            }
-            let told = finish(pathmark(folder.path(), &[&words[..], &["--help"]].concat()));
-            assert_eq!(told.code, Some(0), "{}: {command}\n{}", page.display(), told.err);
-            if let ["run", experiment, ..] = words[..] {
-                let is_known = known.lines().any(|line| line.split_whitespace().next() == Some(experiment));
-                assert!(is_known || experiment == "NAME", "{}: {command}", page.display());
-            }
-            commands += 1;
+    let texts: Vec<String> = pages().into_iter().chain(others).map(|page| fs::read_to_string(page).unwrap()).collect();
+    let is_command =
+        |code: &&str| code.starts_with("pathmark ") && !["VERB", "KIND"].iter().any(|any| code.contains(any));
+    let commands: BTreeSet<Vec<&str>> = texts
+        .iter()
+        .flat_map(|text| text.split('`').filter(is_command))
+        .map(|command| command.split_whitespace().skip(1).map(meant).collect())
+        .collect();
+    assert!(commands.len() > 50, "{commands:?}");
+
+    let reader = Reader::new("--set size=16x12", "32x24");
+    let known = reader.run("pathmark list experiments").out;
+    // A verb alone is its name, and so is that of a part of `inspect` or `new`.
+    let is_name = |words: &[&str]| match words {
+        ["list" | "machine"] => false,
+        [_] | ["inspect" | "new", _] => true,
+        _ => false,
+    };
+    let is_read = |words: &[&str]| is_name(words) || ONLY_READ.contains(&words[0]) || ELSEWHERE.contains(&words);
+    let (read, run): (Vec<_>, Vec<_>) = commands.iter().partition(|words| is_read(words));
+    for words in read {
+        reader.run(&format!("pathmark {} --help", words.join(" ")));
+        if let ["run", experiment, ..] = words[..] {
+            let is_known = known.lines().any(|line| line.split_whitespace().next() == Some(experiment));
+            assert!(is_known || experiment == "NAME", "{words:?}");
         }
     }
-    assert!(commands > 50, "{commands} commands");
+
+    // Rows for the commands that read some: of a sweep, and of a class of two.
+    fs::write(reader.path().join("thread-scaling.toml"), TINY).unwrap();
+    fs::write(reader.path().join("my-paper.toml"), crate::artifact::ledger()).unwrap();
+    std::os::unix::fs::symlink(root.join("results"), reader.path().join("results")).unwrap();
+    reader.run("pathmark run thread-scaling.toml; cp -r out/thread-scaling DIR; mkdir class; cp -r out class/ada");
+    reader.run("cp -r out class/ben");
+    reader.run("pathmark render cornell --spp 4 -o OURS.pfm; cp OURS.pfm THEIRS.pfm");
+    // What `new` makes is used by others.
+    let (made, used): (Vec<_>, Vec<_>) = run.into_iter().partition(|words| words[0] == "new");
+    for words in made.iter().chain(&used) {
+        reader.run(&format!("pathmark {}", words.join(" ")));
+    }
+    assert!(made.len() > 2 && used.len() > 20, "{made:?} {used:?}");
+}
+
+fn meant(word: &str) -> &str {
+    MEANT.iter().find(|(stands, _)| *stands == word).map_or(word, |(_, meaning)| *meaning)
+}
+
+/// The script of the notes on regressions, in a repository of two commits. A stand-in for `cargo` puts this program
+/// into both folders, because compiling it twice takes minutes.
+#[test]
+fn the_script_of_the_notes_compares_two_commits() {
+    let reader = Reader::new("--set size=16x12", "64x48");
+    let text = include_str!("../../docs/notes/regressions.md");
+    let script = blocks(text).into_iter().find_map(|(language, block)| (language == "bash").then_some(block));
+    let programs = reader.programs.path().display();
+    let cargo = reader.programs.path().join("cargo");
+    let compiles = format!(
+        "#!/bin/sh\n[ \"$*\" = 'build --release' ]\nmkdir -p target/release\ncp {programs}/pathmark target/release\n"
+    );
+    fs::write(&cargo, compiles).unwrap();
+    fs::set_permissions(&cargo, Permissions::from_mode(0o755)).unwrap();
+    let commit = "git -c user.name=Ada -c user.email=ada@example.org commit -q --allow-empty -m";
+    let finished = reader.run(&format!(
+        "mkdir {programs}/new && cd {programs}/new && git init -q && {commit} old && {commit} new; BASE=HEAD~1\n{}",
+        script.expect("the script")
+    ));
+    assert!(finished.out.contains("work-stealing"), "{}", finished.out);
+    assert!(reader.programs.path().join("old/.git").is_file(), "a work tree of the commit before");
+}
+
+/// The two commands that compare with Mitsuba. They run if Python has Mitsuba (`.ci/install` installs it): `pip` then
+/// installs two packages that only lead to the one that is there, so no test needs a network.
+#[test]
+fn the_commands_for_mitsuba_run() {
+    const PACKAGES: &str = r"
+import ensurepip, os, zipfile, mitsuba, numpy
+for package in (mitsuba, numpy):
+    name = package.__name__
+    with zipfile.ZipFile(f'{name}-1-py3-none-any.whl', 'w') as wheel:
+        wheel.writestr(f'{name}.pth', os.path.dirname(os.path.dirname(package.__file__)))
+        wheel.writestr(f'{name}-1.dist-info/METADATA', f'Metadata-Version: 2.1\nName: {name}\nVersion: 1\n')
+        wheel.writestr(f'{name}-1.dist-info/WHEEL', 'Wheel-Version: 1.0\nRoot-Is-Purelib: true\nTag: py3-none-any\n')
+        wheel.writestr(f'{name}-1.dist-info/RECORD', '')
+";
+    let reader = Reader::new("--set size=16x16", "64x48");
+    let folder = reader.programs.path();
+    let mut packages = Command::new("python3");
+    packages.args(["-c", PACKAGES]).current_dir(folder);
+    if !packages.output().is_ok_and(|output| output.status.success()) {
+        eprintln!("Python, its venv or Mitsuba is missing: the commands in docs/external.md are not run");
+        return;
+    }
+    let root = env!("CARGO_MANIFEST_DIR");
+    let text = include_str!("../../docs/external.md");
+    let script = blocks(text).into_iter().find_map(|(language, block)| (language == "sh").then_some(block));
+    let offline =
+        format!("export PIP_NO_INDEX=1 PIP_FIND_LINKS={0} PIP_DISABLE_PIP_VERSION_CHECK=1; cd {0}", folder.display());
+    // One small image instead of eighteen larger ones, and a reference to match.
+    let few = "sed -i -e 's/= .4, 16, 64./= [4]/; s/= .1, 2, 3, 4, 5, 6./= [1]/; s/96, 96/16, 16/; s/1024/64/' \
+               experiments/peers/mitsuba.toml";
+    let finished = reader.run(&format!(
+        "{offline}; mkdir -p experiments/peers; cp {root}/experiments/peers/mitsuba* experiments/peers; {few}\n{}",
+        script.expect("the commands")
+    ));
+    let rows = fs::read_to_string(folder.join("out/mitsuba/records.csv")).unwrap();
+    assert_eq!(rows.lines().filter(|row| row.contains("/mitsuba")).count(), 1, "{rows}\n{}", finished.out);
 }
 
 /// The shortest ledger of the manual measures its number.

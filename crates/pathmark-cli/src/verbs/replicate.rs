@@ -12,7 +12,7 @@ use crate::experiment::{
 };
 use crate::lock::Sharing;
 use crate::measure::Machine;
-use crate::report::replication::{HEADS, cells, other_hardware, rule, sentence, sorted};
+use crate::report::replication::{HEADS, cells, notices, rule, sentence, sorted};
 use crate::report::{self, check_figures};
 
 /// `pathmark replicate results/reports --plan`
@@ -129,7 +129,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
             let note = if note.is_empty() { String::new() } else { format!("; {note}") };
             format!("{verdict}: {experiment}, {says}{values}{note}")
         });
-        let lines = lines.chain([sentence(&found)]).chain(other_hardware(&found));
+        let lines = lines.chain([sentence(&found)]).chain(notices(&found));
         print(&lines.collect::<Vec<String>>().join("\n"))?;
     }
     // Verdicts are told before a page that could not be written.
@@ -217,7 +217,7 @@ fn in_words(found: &Replication) -> String {
     let parts = [
         format!("{HEADING} of {}", found.theirs),
         sentence(found),
-        other_hardware(found).unwrap_or_default(),
+        notices(found).join("\n\n"),
         rule(found),
         markdown::table(HEADS, sorted(found).into_iter().map(cells)),
         markdown::table(

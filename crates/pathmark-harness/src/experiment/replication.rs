@@ -28,6 +28,9 @@ use std::sync::Arc;
 /// The file of verdicts in the folder of a replication.
 pub const REPLICATION: &str = "replication.json";
 
+/// The name of the fact that tells two versions of the program apart.
+const SOURCES: &str = "Pathmark's sources";
+
 /// The rows of somebody's experiment.
 pub struct Theirs {
     pub folder: PathBuf,
@@ -202,9 +205,10 @@ impl Both<'_> {
                     }
                 }
             };
-            Some(self.unjudged(Kind::Ratio, told(both), evidence))
+            Some((both, evidence))
         };
-        pairs.iter().filter_map(of_pair).collect()
+        let (cells, evidence): (Vec<_>, Vec<_>) = pairs.iter().filter_map(of_pair).unzip();
+        told(&cells).into_iter().zip(evidence).map(|(says, own)| self.unjudged(Kind::Ratio, says, own)).collect()
     }
 
     /// For each image the orders by more than the margin of which `rank` is sure in their rows.
@@ -299,11 +303,28 @@ impl Both<'_> {
     }
 }
 
-/// The two cells of a comparison, by the settings in which they differ.
-fn told([what, with]: [&Cell; 2]) -> String {
-    let differing: Vec<&Setting> = SETTINGS.iter().filter(|own| what.shown(own) != with.shown(own)).collect();
-    let of = |cell: &Cell| differing.iter().map(|own| cell.shown(own)).collect::<Vec<_>>().join(" ");
-    format!("time of {} over {}, {}", of(what), of(with), what.settings.scene)
+/// The two cells of each comparison: the settings in which they differ, their scene, and the settings that keep apart
+/// comparisons which would say the same.
+fn told(pairs: &[[&Cell; 2]]) -> Vec<String> {
+    let short = |[what, with]: &[&Cell; 2]| {
+        let differing: Vec<&Setting> = SETTINGS.iter().filter(|own| what.shown(own) != with.shown(own)).collect();
+        let of = |cell: &Cell| differing.iter().map(|own| cell.shown(own)).collect::<Vec<_>>().join(" ");
+        format!("time of {} over {}, {}", of(what), of(with), what.settings.scene)
+    };
+    let said: Vec<String> = pairs.iter().map(short).collect();
+    let mut alike: BTreeMap<&str, Vec<&Cell>> = BTreeMap::new();
+    for (says, [what, _]) in said.iter().zip(pairs) {
+        alike.entry(says).or_default().push(what);
+    }
+    let in_full = |(says, [what, with]): (&String, &[&Cell; 2])| {
+        let others = &alike[says.as_str()];
+        let apart = SETTINGS.iter().filter(|own| {
+            let value = what.shown(own);
+            value == with.shown(own) && others.iter().any(|other| other.shown(own) != value)
+        });
+        apart.fold(says.clone(), |says, own| format!("{says}, {} {}", own.name, what.shown(own)))
+    };
+    said.iter().zip(pairs).map(in_full).collect()
 }
 
 /// A fact about the machines: theirs, and the one here.
@@ -341,6 +362,12 @@ impl Replication {
             machines: side_by_side(machines),
             statements,
         }
+    }
+
+    /// The versions of the program that measured their rows and those here, if they differ.
+    pub fn versions(&self) -> Option<[&str; 2]> {
+        let own = self.machines.iter().find(|fact| fact.name == SOURCES && fact.theirs != fact.here)?;
+        Some([&own.theirs, &own.here])
     }
 
     /// The experiments with a ratio or an order that is not reproduced.
@@ -409,7 +436,7 @@ fn side_by_side(machines: [&[Machine]; 2]) -> Vec<MachineFact> {
         ("system", |own| own.system.clone()),
         ("governor", |own| own.governor.clone()),
         ("compiler", |own| [own.rustc.as_str(), own.rustflags.as_str()].join(" ").trim().to_string()),
-        ("Pathmark's sources", |own| format!("{}{}", own.commit, if own.dirty { " with changes" } else { "" })),
+        (SOURCES, |own| format!("{}{}", own.commit, if own.dirty { " with changes" } else { "" })),
     ];
     let fact = |(name, of): Fact| {
         let [theirs, here] = machines.map(|all| {

@@ -9,6 +9,7 @@ use crate::lab::Lab;
 use crate::measure::{Record, available_threads};
 use rand::Rng;
 use rand_pcg::Pcg64Dxsm;
+use std::collections::BTreeSet;
 
 const PROCESSES: u32 = 12;
 const PAIRS: u32 = 6;
@@ -60,7 +61,11 @@ struct Experiment {
 
 impl Experiment {
     fn new() -> Self {
-        let definition = Definition::from_text(&Lab::built_in(), "x", "x.toml", TEXT).unwrap();
+        Self::of(TEXT)
+    }
+
+    fn of(text: &str) -> Self {
+        let definition = Definition::from_text(&Lab::built_in(), "x", "x.toml", text).unwrap();
         let cells = definition.cells(Profile::Quick).unwrap();
         let row = |cell: &Cell| {
             let setup = definition.lab.prepare(cell.settings.clone()).unwrap();
@@ -141,6 +146,17 @@ fn a_ratio_that_is_bent_by_a_fifth_is_found_in_ten_of_ten_replications() {
         let [ratio, low, high] = found.difference.unwrap();
         assert!(low > 1.1 && high < 1.3 && (1.15..1.25).contains(&ratio), "{seed}: {found:?}");
     }
+}
+
+/// Ratios that differ only in another setting than the compared one name that setting.
+#[test]
+fn no_two_statements_say_the_same() {
+    let two_numbers = TEXT.replace("spp = [4]", "spp = [4, 8]");
+    let own = Experiment::of(&two_numbers);
+    let told = own.judged([own.measured(1, usual), own.measured(2, usual)]);
+    let ratios: Vec<&str> = told.iter().filter(|own| own.kind == Kind::Ratio).map(|own| own.says.as_str()).collect();
+    assert_eq!((ratios.len(), ratios.iter().collect::<BTreeSet<_>>().len()), (8, 8), "{ratios:?}");
+    assert!(ratios.contains(&"time of work-stealing over serial, cornell, spp 8"), "{ratios:?}");
 }
 
 /// Rows that all take twice as long give the same statements, bit for bit.

@@ -30,8 +30,8 @@ pub(crate) fn section(out: &Path) -> Result<Option<Section>> {
         .column("theirs", |fact| fact.theirs.clone())
         .column("here", |fact| fact.here.clone())
         .end();
-    let hardware = other_hardware(&found).map(Block::notice);
-    let blocks = [Block::finding(sentence(&found))].into_iter().chain(hardware).chain([table.end(), machines]);
+    let notices = notices(&found).into_iter().map(Block::notice);
+    let blocks = [Block::finding(sentence(&found))].into_iter().chain(notices).chain([table.end(), machines]);
     Ok(Some(Section {
         name: "replication".to_string(),
         title: format!("Replication of {}", found.theirs),
@@ -66,8 +66,14 @@ pub fn rule(found: &Replication) -> String {
     )
 }
 
-/// The parts that this machine lacks, each with the number of statements; `None` if it lacks nothing.
-pub fn other_hardware(found: &Replication) -> Option<String> {
+/// Two versions of the program, and the parts that this machine lacks, each with the number of statements.
+pub fn notices(found: &Replication) -> Vec<String> {
+    let of_versions = |[theirs, here]: [&str; 2]| {
+        format!(
+            "Other sources: a program of {theirs} measured their rows, and one of {here} those here. A difference of \
+             times may come from the program."
+        )
+    };
     let mut reasons: BTreeMap<&str, usize> = BTreeMap::new();
     for own in &found.statements {
         if let Reproduction::OtherHardware(why) = &own.verdict {
@@ -76,7 +82,8 @@ pub fn other_hardware(found: &Replication) -> Option<String> {
     }
     let told = reasons.into_iter().map(|(why, count)| format!("{why} ({})", counted(count, "statement")));
     let told: Vec<String> = told.collect();
-    (!told.is_empty()).then(|| format!("Other hardware: {}.", told.join("; ")))
+    let of_hardware = (!told.is_empty()).then(|| format!("Other hardware: {}.", told.join("; ")));
+    found.versions().map(of_versions).into_iter().chain(of_hardware).collect()
 }
 
 /// The statements, those first that are not reproduced.
@@ -96,11 +103,12 @@ pub fn cells(own: &Statement) -> [String; 8] {
     };
     let difference = own.difference.map(|[middle, low, high]| (middle, [low, high]));
     let note = match &own.verdict {
+        _ if !own.note.is_empty() => own.note.clone(),
         Reproduction::CannotTell(Some(more)) => counted(*more, &format!("more {}", own.kind.unit())),
         Reproduction::CannotTell(None) if own.kind == Kind::Order => "the times here are too close".to_string(),
         Reproduction::CannotTell(None) => "theirs are too few, or the difference lies at the limit".to_string(),
         Reproduction::OtherHardware(why) => why.clone(),
-        Reproduction::Reproduced | Reproduction::NotReproduced => own.note.clone(),
+        Reproduction::Reproduced | Reproduction::NotReproduced => String::new(),
     };
     [
         own.experiment.clone(),
@@ -141,7 +149,10 @@ mod tests {
             share: 0.1,
             joint_level: 0.95,
             level: 0.999_999,
-            machines: vec![MachineFact { name: "processor".into(), theirs: "large".into(), here: "small".into() }],
+            machines: [["processor", "large", "small"], ["Pathmark's sources", "abc", "def"]]
+                .map(|fact| fact.map(str::to_string))
+                .map(|[name, theirs, here]| MachineFact { name, theirs, here })
+                .into(),
             statements: vec![
                 statement(Kind::Ratio, Reproduction::Reproduced),
                 statement(Kind::Slope, Reproduction::CannotTell(Some(1))),
@@ -161,9 +172,9 @@ mod tests {
         let expected = "4 statements of results/<b>: 1 reproduced, 1 other hardware, 1 cannot tell, 1 not reproduced.";
         assert_eq!((found.in_short.as_deref(), found.blocks[0].as_finding()), (Some(expected), Some(expected)));
         assert!(found.analysis.contains("less than 10 %") && found.analysis.contains("each has 99.99 %"));
-        assert!(
-            matches!(&found.blocks[1], Block::Notice(text) if text.contains("64 threads instead of 2 (1 statement)"))
-        );
+        let is_told = |at: usize, said: &str| matches!(&found.blocks[at], Block::Notice(text) if text.contains(said));
+        assert!(is_told(1, "a program of abc measured their rows, and one of def those here"));
+        assert!(is_told(2, "64 threads instead of 2 (1 statement)"));
         let html = crate::page::html(&[found]).unwrap();
         let place = |text: &str| html.find(text).unwrap_or_else(|| panic!("{text}: {html}"));
         let order = [
@@ -193,5 +204,8 @@ mod tests {
         let other =
             Statement { note: "checksum a instead of b".into(), ..statement(Kind::Image, Reproduction::NotReproduced) };
         assert_eq!(cells(&other)[7], "checksum a instead of b");
+        let second =
+            Statement { note: "a second one".into(), ..statement(Kind::Ratio, Reproduction::CannotTell(None)) };
+        assert_eq!(cells(&second)[7], "a second one");
     }
 }
