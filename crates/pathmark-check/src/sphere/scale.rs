@@ -19,16 +19,16 @@ fn exponents(count: i32) -> Vec<i32> {
 }
 
 pub(super) fn powers_of_two(trials: &mut Trials) {
-    let whole = trials.times(11, 81) as i32;
+    let (few, many) = (trials.times(5, 81) as i32, trials.times(21, 81) as i32);
     let spec = Spec { width: SIZE.0, height: SIZE.1, seed: 7, ..Spec::default() };
     for (name, _) in SCENES {
         let scene = Arc::new(load(name).expect("a shipped scene"));
         for estimator in ESTIMATORS {
             let count = match *name {
                 // The most used scene.
-                "cornell" => 81,
+                "cornell" => many,
                 _ if is_large(&scene) => 3,
-                _ => whole,
+                _ => few,
             };
             let spec = Spec { estimator: estimator.name.into(), ..spec.clone() };
             same_bits(trials, &scene, &spec, &exponents(count));
@@ -44,7 +44,7 @@ pub(super) fn powers_of_two(trials: &mut Trials) {
     for accelerator in ACCELERATORS {
         let accelerator = Some(accelerator.name.to_string());
         let spec = Spec { estimator: "bsdf".into(), accelerator, ..spec.clone() };
-        same_bits(trials, &furnace, &spec, &exponents(whole));
+        same_bits(trials, &furnace, &spec, &exponents(few));
     }
 }
 

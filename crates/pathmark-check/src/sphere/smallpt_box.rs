@@ -59,7 +59,7 @@ const BALLS: [(&str, [f64; 3], f64, f64); 2] = [
 ];
 
 pub(super) fn sunken_balls(trials: &mut Trials) {
-    let rays = trials.times(30_000, 1_000_000);
+    let rays = trials.times(10_000, 1_000_000);
     let cornell = load("cornell").expect("a shipped scene");
     let floor = Vec3::new(50.0, 1e5, 81.6);
     for (accelerator, scene) in searches(&cornell) {
