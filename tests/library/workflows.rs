@@ -114,8 +114,8 @@ fn the_comparison_of_processors_notices_differences() {
     for (found, is_same) in cases {
         assert_eq!(equal(expected, &found), is_same, "{found}");
     }
-    let nothing = ["checksum 1", "checksum 2", "checksum 3"].iter().fold(expected.to_string(), |text, checksum| {
-        text.replace(checksum, "exit 2")
-    });
+    let nothing = ["checksum 1", "checksum 2", "checksum 3"]
+        .iter()
+        .fold(expected.to_string(), |text, checksum| text.replace(checksum, "exit 2"));
     assert!(!equal(&nothing, &nothing));
 }
