@@ -86,14 +86,18 @@ fn scripts_of_workflows_exist() {
     assert!(scripts >= 4, "{scripts} scripts");
 }
 
-/// The workflow's comparison notices another checksum, a missing render, and files without any checksum.
+/// The workflow's comparison notices another checksum, a missing render, and files without any checksum. It leaves out
+/// what a device has no program for.
 #[test]
 fn the_comparison_of_processors_notices_differences() {
     let folder = tempfile::tempdir().unwrap();
-    let expected = "a --precision f64|checksum 1\na --precision f32|checksum 2\nb --precision f32|exit 2\n";
+    let expected = "a --precision f64|checksum 1\na --precision f32|checksum 2\nb --precision f32|exit 2\n\
+                    c --precision f64|checksum 3\n";
     let cases = [
         (expected.to_string(), true),
-        (expected.replace("checksum 2", "checksum 3"), false),
+        (expected.replace("checksum 3", "another kernel"), true),
+        (expected.replace("checksum 2", "another kernel"), false),
+        (expected.replace("checksum 2", "checksum 4"), false),
         (expected.replace("exit 2", "checksum 2"), false),
         (expected.replace("b --precision f32|exit 2\n", ""), false),
     ];
@@ -110,6 +114,8 @@ fn the_comparison_of_processors_notices_differences() {
     for (found, is_same) in cases {
         assert_eq!(equal(expected, &found), is_same, "{found}");
     }
-    let nothing = expected.replace("checksum 1", "exit 2").replace("checksum 2", "exit 2");
+    let nothing = ["checksum 1", "checksum 2", "checksum 3"]
+        .iter()
+        .fold(expected.to_string(), |text, checksum| text.replace(checksum, "exit 2"));
     assert!(!equal(&nothing, &nothing));
 }

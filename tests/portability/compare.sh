@@ -14,6 +14,8 @@ for found in "$@"; do
     paste -d '|' "$expected" "$found" | awk -F'|' -v who="$(basename "$(dirname "$found")"), $(basename "$found")" '
         $1 != $3 { wrong++; print who ": " $3 ": expected " $1 >"/dev/stderr"; next }
         $2 !~ /^checksum/ && $2 == $4 { next }
+        # A device has no program for it.
+        $4 == "another kernel" { next }
         { precision = $1 ~ /--precision f32/ ? "f32" : "f64"; compared[precision]++ }
         $2 != $4 { wrong++; differ[precision]++; print who ": " $1 ": " $4 ", not " $2 >"/dev/stderr" }
         END {

@@ -5,20 +5,24 @@
 #   tests/portability/run.sh aarch64       64-bit ARM: the instruction sets neon and baseline
 #   tests/portability/run.sh riscv64
 #   tests/portability/run.sh s390x         big-endian
+#   tests/portability/run.sh devices       this machine's devices, without an emulator: only images
 #
 # PATHMARK_PORTABILITY is the folder of the emulator, of the compilers and of what they make [default: ~/.cache/pathmark-portability]. The first run
 # installs a small Debian there, whose compiler has Rust's library for many processors. PATHMARK_PARTS names what to do, some of
-# "images files units paths contract cases" [default: all]; the last four are tests under emulation. target/portability keeps the checksums of each
-# program, so an interrupted comparison continues.
+# "images files units paths contract cases" [default: all]; the last four are tests under emulation. Each emulated program may take PATHMARK_LIMIT
+# seconds [default: 600]; one that takes longer is named. target/portability keeps the checksums and verdicts of each program, so an interrupted run
+# continues.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 fail() { printf '%s\n' "$1" >&2; exit "$2"; }
 
+known="images files units paths contract cases"
 case "${1:-}" in
     aarch64) debian=arm64 target=aarch64-unknown-linux-gnu tools=aarch64-linux-gnu ;;
     riscv64) debian=riscv64 target=riscv64gc-unknown-linux-gnu tools=riscv64-linux-gnu ;;
     s390x) debian=s390x target=s390x-unknown-linux-gnu tools=s390x-linux-gnu ;;
-    *) fail "architecture = ${1:-}: is not one of aarch64, riscv64, s390x" 2 ;;
+    devices) known=images ;;
+    *) fail "architecture = ${1:-}: is not one of aarch64, riscv64, s390x, devices" 2 ;;
 esac
 architecture=$1
 base=${PATHMARK_PORTABILITY:-$HOME/.cache/pathmark-portability}
@@ -26,7 +30,7 @@ root=$base/root
 repository=$PWD
 kept=$repository/target/portability
 downloads=${CARGO_HOME:-$HOME/.cargo}/registry
-known="images files units paths contract cases"
+limit=${PATHMARK_LIMIT:-600}
 parts=${PATHMARK_PARTS:-$known}
 for part in $parts; do
     [[ " $known " == *" $part "* ]] || fail "PATHMARK_PARTS = $part: is not one of $known" 2
@@ -47,7 +51,7 @@ within() {
         mount --rbind /dev "$root/dev"
         exec chroot "$root" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 "$@"
     ' within "$root" "$repository" "$downloads" \
-        CARGO_TARGET_DIR=/target "${variable}_LINKER=$tools-gcc" "${variable}_RUNNER=qemu-$architecture -L /usr/$tools" \
+        CARGO_TARGET_DIR=/target "${variable}_LINKER=$tools-gcc" "${variable}_RUNNER=${emulator[*]}" \
         bash -euo pipefail -c 'cd "$0" && exec "$@"' "$repository" "$@"
 }
 
@@ -85,12 +89,17 @@ folder() { echo "$kept/$(sha256sum <"$1" | cut -c 1-12)/$2"; }
 
 images() {
     local mine theirs
-    mine=$(folder target/debug/pathmark "$(uname -m)") theirs=$(folder "$root/target/$target/debug/pathmark" "$architecture")
+    mine=$(folder target/debug/pathmark "$(uname -m)")
+    if [ "$architecture" = devices ]; then theirs=$mine-devices; else theirs=$(folder "$root/target/$target/debug/pathmark" "$architecture"); fi
     mkdir -p "$mine" "$theirs"
     # Named only when it is whole, because a run may be interrupted.
     [ -e "$mine.options" ] || { bash tests/portability/options.sh target/debug/pathmark >"$work/options" && mv "$work/options" "$mine.options"; }
-    bash tests/portability/checksums.sh "$mine.options" "$mine" target/debug/pathmark
-    within bash tests/portability/checksums.sh "$mine.options" "$theirs" "${emulated[@]}"
+    bash tests/portability/checksums.sh simd "$mine.options" "$mine" target/debug/pathmark
+    if [ "$architecture" = devices ]; then
+        bash tests/portability/checksums.sh devices "$mine.options" "$theirs" target/debug/pathmark
+    else
+        within bash tests/portability/checksums.sh simd "$mine.options" "$theirs" "${emulated[@]}"
+    fi
     bash tests/portability/compare.sh "$mine/baseline" "$mine"/* "$theirs"/* || echo "images differ" >>"$work/differences"
 }
 
@@ -130,29 +139,69 @@ files() {
     told "checkpoint of here, resumed there" "$(checksum there render "$@" --checkpoint "$work/ours" -o "$work/4.pfm")" "$whole"
 }
 
+# Tries a verb of the emulated program with each name, and prints a row for each. What has passed in an earlier run is not tried again.
+verdicts() {
+    local verb=$1 rows name code
+    rows=$(folder "$root/target/$target/debug/pathmark" "$architecture-$1")
+    shift
+    mkdir -p "$(dirname "$rows")"
+    touch "$rows"
+    sed -i '/ passed |$/!d' "$rows"
+    for name; do
+        ! grep -qF "| $verb $name |" "$rows" || continue
+        code=0
+        there "$verb" "$name" >"$work/said" 2>&1 </dev/null || code=$?
+        case $code in
+            0) echo "| $verb $name | passed |" ;;
+            124 | 137) echo "| $verb $name | NOT ENDED after $limit s |" ;;
+            *) echo "| $verb $name | FAILED with code $code |" && cat "$work/said" >&2 ;;
+        esac >>"$rows"
+    done
+    printf '| %s | result |\n|--|--|\n' "$verb"
+    cat "$rows"
+    grep -v 'passed |$' "$rows" >>"$work/differences" || true
+}
+
 tested() {
     within cargo test --quiet --locked --offline --target "$target" -p pathmark-tracer -p pathmark-strategy -p pathmark-lanes "$@"
 }
 units() { tested --lib; }
-paths() { tested --test paths --test equilibrium; }
-contract() { tested --test strategy_contract; }
-# By letters: without them, the price list of the guards would be timed, too.
-cases() { there selftest S T H P R M A; }
+# Of the equilibrium of scenes one test in three: the others follow as many paths as an error of 0.1 % takes.
+paths() { tested --test paths && tested --test equilibrium long_paths; }
+# Strategies one by one, so that the one that hangs has a name.
+contract() {
+    verdicts contract $(here list strategies --json | grep -o '"name":"[^"]*"' | cut -d '"' -f 4) \
+        dynamic:7 mfac:50 steal-one:richest steal-half:neighbour weighted-factoring:1:0.5
+    tested --test strategy_contract refusals::
+}
+# All cases by name, which the message about a wrong name lists. Without names, the price list of the guards would be timed, too.
+cases() { verdicts selftest $( (here selftest none 2>&1 || true) | grep -oE '\b[A-Z][0-9]+\b'); }
 
-emulated=("qemu-$architecture" -L "/usr/$tools" "/target/$target/debug/pathmark")
-prepare
+emulator=(timeout --foreground --kill-after=10 "$limit" "qemu-$architecture" -L "/usr/${tools:-}")
+emulated=("${emulator[@]}" "/target/${target:-}/debug/pathmark")
 cargo build --locked
-within cargo build --locked --offline --target "$target"
 mkdir -p "$kept"
 work=$(mktemp -d "$kept/work-XXXXXX")
 trap 'rm -rf "$work"' EXIT
 touch "$work/differences"
-echo "$architecture, $(date -u +%F), commit $(git rev-parse --short=12 HEAD), $(rustc --version) here, $(within rustc --version) there"
+compiled="$(rustc --version) here"
+if [ "$architecture" != devices ]; then
+    prepare
+    within cargo build --locked --offline --target "$target"
+    compiled+=", $(within rustc --version) and $(within "qemu-$architecture" --version | head -n 1) there"
+fi
+echo "$architecture, $(date -u +%F), commit $(git rev-parse --short=12 HEAD), $compiled"
 for part in $parts; do
     printf '\n%s\n' "$part"
-    "$part"
+    # In a condition, Bash would go on after an error within the part.
+    set +e
+    (set -e; "$part")
+    code=$?
+    set -e
+    [ "$code" = 0 ] || echo "$part: code $code" | tee -a "$work/differences"
 done
 if [ -s "$work/differences" ]; then
+    printf '\ndifferent, failed or not ended:\n'
     cat "$work/differences"
     exit 1
 fi
