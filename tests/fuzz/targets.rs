@@ -46,7 +46,7 @@ const TARGET: Target = Target {
     more: Vec::new,
     words: &[],
     cut: true,
-    mutations: 3000,
+    mutations: 3700,
 };
 
 /// All targets.
