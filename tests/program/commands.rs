@@ -236,7 +236,7 @@ fn the_commands_within_sentences_run() {
     reader.run("pathmark run thread-scaling.toml; cp -r out/thread-scaling DIR; mkdir class; cp -r out class/ada");
     reader.run("cp -r out class/ben");
     reader.run("pathmark render cornell --spp 4 -o OURS.pfm; cp OURS.pfm THEIRS.pfm");
-    // What `new` makes is used by others.
+    // Other commands use the files that `new` makes.
     let (made, used): (Vec<_>, Vec<_>) = run.into_iter().partition(|words| words[0] == "new");
     for words in made.iter().chain(&used) {
         reader.run(&format!("pathmark {}", words.join(" ")));
