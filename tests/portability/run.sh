@@ -166,7 +166,7 @@ tested() {
     within cargo test --quiet --locked --offline --target "$target" -p pathmark-tracer -p pathmark-strategy -p pathmark-lanes "$@"
 }
 units() { tested --lib; }
-# Of the equilibrium of scenes one test in three: the others follow as many paths as an error of 0.1 % takes.
+# Of the equilibrium of scenes one test in three: the others take longest.
 paths() { tested --test paths && tested --test equilibrium long_paths; }
 # Strategies one by one, so that the one that hangs has a name.
 contract() {
