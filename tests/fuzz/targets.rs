@@ -46,7 +46,7 @@ const TARGET: Target = Target {
     more: Vec::new,
     words: &[],
     cut: true,
-    mutations: 3700,
+    mutations: 2000,
 };
 
 /// All targets.
@@ -66,7 +66,7 @@ pub(crate) const TARGETS: &[Target] = &[
         read: mesh,
         words: MESH_WORDS,
         // These take ten times as long as most.
-        mutations: 4000,
+        mutations: 1500,
         ..TARGET
     },
     Target { name: "ply", file: "thing.ply", prepare: scene_with_a_ply_mesh, read: mesh, words: PLY_WORDS, ..TARGET },

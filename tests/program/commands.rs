@@ -1,6 +1,7 @@
 //! The commands in the documents run as printed there, with smaller images.
 
 use crate::experiment::TINY;
+use crate::faults::is_thorough;
 use crate::program::{Finished, finish, in_memory, pathmark};
 use crate::ranks::{has_launcher, launcher_named};
 use std::collections::BTreeSet;
@@ -189,8 +190,8 @@ const MEANT: [(&str, &str); 5] = [
     ("FOLDER...", "DIR"),
 ];
 
-/// Verbs whose commands within sentences are only read. Shipped experiments, studies and self-tests take minutes to
-/// hours; other tests run them in small. `grade` and `artifact` need a folder that tests of their own make.
+/// Verbs whose commands within sentences are only read. Studies and self-tests take minutes to hours; other tests run
+/// them in small. `grade` and `artifact` need a folder that tests of their own make. A thorough test runs experiments.
 const ONLY_READ: [&str; 7] = ["run", "reproduce", "selftest", "simulate", "doctor", "grade", "artifact"];
 
 /// Commands within sentences: the program understands their verb, options, values and names, and all but
@@ -226,6 +227,10 @@ fn the_commands_within_sentences_run() {
         if let ["run", experiment, ..] = words[..] {
             let is_known = known.lines().any(|line| line.split_whitespace().next() == Some(experiment));
             assert!(is_known || experiment == "NAME", "{words:?}");
+            if is_known && is_thorough() {
+                let reader = Reader::new("--set size=16x12 --repetitions 1", "32x24");
+                reader.run(&format!("pathmark {}", words.join(" ")));
+            }
         }
     }
 

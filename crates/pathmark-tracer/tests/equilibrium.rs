@@ -5,7 +5,7 @@
 //! Russian roulette causes most of the noise of such an image; `energy.rs` tests it against closed forms. So the mean
 //! is tested on paths that are cut before roulette begins. Each gets the light that its rest would have
 //! brought, which in equilibrium is its throughput. Paths of any length are tested too, as precisely as a test's time
-//! allows. The usual run tests to 0.2 %. With `PATHMARK_THOROUGH` set every scene gets as many samples as 0.1 % takes,
+//! allows. The usual run tests to 0.3 %. With `PATHMARK_THOROUGH` set every scene gets as many samples as 0.1 % takes,
 //! except `overlap`: samples cannot estimate the variance of its paths of any length.
 //!
 //! Family-wise level 1e-3 (Sidak), two-sided. A first run with other random numbers estimates the number of samples
@@ -20,7 +20,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 const LEVEL: f64 = 1e-3;
 const SIZE: (u32, u32) = (64, 48);
 /// The error of an image's mean that a test must detect, and that of a thorough one.
-const POWER: f64 = 2e-3;
+const POWER: f64 = 3e-3;
 const THOROUGH_POWER: f64 = 1e-3;
 /// Largest number of samples of a scene, unless the test is thorough.
 const MOST: f64 = 3e6;
@@ -28,7 +28,7 @@ const MOST: f64 = 3e6;
 /// is sampled by the cosine. The same gloss sampled by its facets, `kd-ks-25-vndf`, is no exception. Report B's guards
 /// keep such a gloss, and add light at grazing angles.
 const NOISY: [(&str, f64); 5] =
-    [("wada2", 4e-3), ("kd-ks-25", 4e-3), ("hollow", 6e-3), ("report-b-0", 4e-3), ("report-b-25", 4e-3)];
+    [("wada2", 6e-3), ("kd-ks-25", 6e-3), ("hollow", 9e-3), ("report-b-0", 6e-3), ("report-b-25", 6e-3)];
 /// Glass in a mirror ball. smallpt chooses refraction, which has the weight 1 - Re, with probability 3/4 - Re/2. So
 /// every such vertex multiplies the second moment by up to 1.27, and almost only the lamp ends these paths. Up to
 /// [`LONG`] bounces the test is stricter, in thorough mode 0.1 %; beyond, this is the error that it must detect.
@@ -266,5 +266,5 @@ fn paths_of_any_length() {
 /// These paths include Russian roulette. They are cut after [`LONG`] bounces.
 #[test]
 fn long_paths_where_those_of_any_length_have_no_bound() {
-    is_one(&small(UNBOUNDED.0), Some(LONG), &wary(if is_thorough() { THOROUGH_POWER } else { 5e-3 }));
+    is_one(&small(UNBOUNDED.0), Some(LONG), &wary(if is_thorough() { THOROUGH_POWER } else { 8e-3 }));
 }
