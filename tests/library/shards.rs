@@ -43,7 +43,7 @@ fn merged_parts_have_the_bits_of_the_whole() {
         let whole = settings(104, precision);
         let expected = Setup::prepare(whole.clone()).unwrap().run(None).unwrap().film.checksum();
         for cut in CUTS {
-            for count in [1, 2, 3, 5, 7] {
+            for count in [1, 3, 7] {
                 let folder = tempfile::tempdir().unwrap();
                 let mut parts: Vec<PathBuf> = (1..=count)
                     .map(|index| {

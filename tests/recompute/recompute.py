@@ -182,7 +182,19 @@ def read(folder, experiment):
     if not path.is_file() and not packed.is_file():
         return []
     with path.open(newline="") if path.is_file() else gzip.open(packed, "rt", newline="") as file:
-        return [row for row in csv.DictReader(file) if not row["error"] and row["makespan_s"]]
+        rows = [row for row in csv.DictReader(file) if not row["error"] and row["makespan_s"]]
+    number_turns([row for row in rows if row.get("pair")])
+    return rows
+
+
+def number_turns(rows):
+    """Rows of one turn ran one after another: every group of compared cells counts its pairs, and their places, from 0."""
+    rows.sort(key=lambda row: (int(row["repetition"]), int(row["run_order"])))
+    turn, last = 0, None
+    for row in rows:
+        own = [int(row[name]) for name in ("repetition", "pair", "place")]
+        turn += last is not None and (own[:2] != last[:2] or own[2] <= last[2])
+        row["turn"], last = str(turn), own
 
 
 def unit_of(unit, run, row):
@@ -212,7 +224,7 @@ def ratios(rows, over, named, column):
             found = defaultdict(list)
             for run, row in rows:
                 if (value := number(row, column)) is not None:
-                    pair = row.get("pair", "") if keeps_pairs else ""
+                    pair = row.get("turn", "") if keeps_pairs else ""
                     settings = tuple(row.get(name, "") for name in kept)
                     found[run, settings, row["repetition"], pair, row["cell"]].append((row, value))
             return {key: (all[0][0], median([value for _, value in all])) for key, all in found.items()}

@@ -66,11 +66,11 @@ fn every_scene_has_the_scalar_kernels_bits() {
         for estimator in ESTIMATORS {
             for sampler in ["independent", "hash", "sobol"] {
                 let (estimator, sampler) = (estimator.name.to_string(), sampler.to_string());
-                let spec = Spec { width: 24, height: 18, seed: 3, estimator, sampler, ..Spec::default() };
+                let spec = Spec { width: 16, height: 12, seed: 3, estimator, sampler, ..Spec::default() };
                 if !is_for_lanes(&scene, &spec) {
                     continue;
                 }
-                let bounds = Bounds { x0: 0, y0: 0, x1: 24, y1: 18 };
+                let bounds = Bounds { x0: 0, y0: 0, x1: 16, y1: 12 };
                 assert_same(&scene, &spec, &[Piece { bounds, samples: 0..4 }]);
                 compared += 1;
             }
@@ -115,7 +115,7 @@ fn scenes_of_many_primitives_have_the_same_colours() {
 #[test]
 fn single_precision_is_the_same_everywhere_and_converges_to_the_same() {
     let watchdog = Watchdog::new(Duration::from_mins(5));
-    let piece = Piece { bounds: Bounds { x0: 0, y0: 0, x1: 24, y1: 18 }, samples: 0..64 };
+    let piece = Piece { bounds: Bounds { x0: 0, y0: 0, x1: 24, y1: 18 }, samples: 0..32 };
     let mut scores = Vec::new();
     for (name, _) in SCENES {
         watchdog.now(*name);

@@ -54,7 +54,7 @@ fn uses_do_not_go_together_within_a_pixel() {
 #[test]
 fn pixels_and_seeds_share_no_noise() {
     const WIDTH: u32 = 256;
-    const PIXELS: u32 = WIDTH * 256;
+    const PIXELS: u32 = WIDTH * 64;
     let seeds = [2, 3, 1 << 32, REFERENCE_SEEDS | 2];
     let uses = first_uses();
     let samplers = all_keyed();

@@ -50,6 +50,7 @@ mod table;
 mod texts;
 mod time_limit;
 mod together;
+mod turns;
 
 pub use crate::measure::read_calibration;
 pub use baseline::baseline_folder;
@@ -86,6 +87,7 @@ pub use sweep::{Options, Summary, Sweep};
 pub use sweep_shard::SweepShard;
 pub use texts::{Named, Texts, claims, embed, experiments};
 pub use time_limit::{TIMED_OUT, Timeout};
+pub use turns::turns;
 
 /// Receives the progress of long work. The command line implements it.
 pub trait Progress: Sync {

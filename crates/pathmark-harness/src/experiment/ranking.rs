@@ -5,13 +5,14 @@
 
 use super::Cell;
 use super::definition::Definition;
-use super::diff::{Times, is_in_pairs, level_of, of_processes, turn};
+use super::diff::{Times, is_in_pairs, level_of, of_processes};
 use super::packed_rows::records_path;
 use super::profile::Profile;
 use super::records_file::read_records;
 use super::run_file::{MACHINE, read_run_file};
 use super::stopping_rule::MOST_REPETITIONS;
 use super::together::{Schedules, Timed, parts};
+use super::turns::turns;
 use crate::analysis::Interval;
 use crate::analysis::adjacent_pairs::{FEWEST_PROCESSES, by_process, paired_ratio};
 use crate::analysis::confidence_sequence::{Stopping, median_sequence};
@@ -76,13 +77,14 @@ pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Rank
     let rows = read_records(&records_path(folder))?;
     let run = read_run_file(&folder.join(MACHINE))?;
     let wanted = if filters.is_empty() { None } else { Some(wanted(lab, folder, &run.profile, filters)?) };
-    let rows: Vec<&Record> =
-        rows.iter().filter(|row| wanted.as_ref().is_none_or(|wanted| wanted.contains(&row.cell))).collect();
+    let turns = turns(&rows);
+    let rows: Vec<(&Record, Turn)> = (rows.iter().zip(turns))
+        .filter(|(row, _)| wanted.as_ref().is_none_or(|wanted| wanted.contains(&row.cell)))
+        .collect();
     let shown_only = if run.uncapped { BTreeSet::new() } else { shown_only(lab, folder, &run.profile) };
-    let (with_time, without): (Vec<&Record>, Vec<&Record>) =
-        rows.iter().copied().partition(|row| seconds(row).is_some());
-    let timed: BTreeSet<&str> = with_time.iter().map(|row| row.cell.as_str()).collect();
-    let failed: BTreeSet<&str> = without.iter().map(|row| row.cell.as_str()).collect();
+    let (with_time, without): (Vec<_>, Vec<_>) = rows.iter().copied().partition(|(row, _)| seconds(row).is_some());
+    let timed: BTreeSet<&str> = with_time.iter().map(|(row, _)| row.cell.as_str()).collect();
+    let failed: BTreeSet<&str> = without.iter().map(|(row, _)| row.cell.as_str()).collect();
     let mut images = schedules_of(with_time, &shown_only);
     images.retain(|_, schedules| schedules.len() > 1);
     if images.is_empty() {
@@ -117,7 +119,9 @@ pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Rank
         images: rankings.collect(),
         without_time: failed.difference(&timed).map(|cell| (*cell).to_string()).collect(),
         least_repetitions: least.max().unwrap_or(0),
-        doubts: TimingConcerns::of(rows.iter().filter(|row| row.error.is_empty()).map(|row| row.warnings.as_str())),
+        doubts: TimingConcerns::of(
+            rows.iter().filter(|(row, _)| row.error.is_empty()).map(|(row, _)| row.warnings.as_str()),
+        ),
     })
 }
 
@@ -128,11 +132,11 @@ fn seconds(row: &Record) -> Option<f64> {
 
 /// The schedules of each image with their times. Those of the cells in `shown_only` are not compared.
 pub(super) fn schedules_of<'a>(
-    rows: impl IntoIterator<Item = &'a Record>,
+    rows: impl IntoIterator<Item = (&'a Record, Turn)>,
     shown_only: &BTreeSet<String>,
 ) -> BTreeMap<ImageKey, Schedules> {
     let mut images: BTreeMap<ImageKey, Schedules> = BTreeMap::new();
-    for (row, seconds) in rows.into_iter().filter_map(|row| Some((row, seconds(row)?))) {
+    for (row, turn, seconds) in rows.into_iter().filter_map(|(row, turn)| Some((row, turn, seconds(row)?))) {
         let image = row.image_key();
         let schedule = row.cell.strip_prefix(&format!("{image}/")).unwrap_or(&row.cell).to_string();
         let role = || Timed {
@@ -141,7 +145,7 @@ pub(super) fn schedules_of<'a>(
             ..Timed::default()
         };
         let own = images.entry(image).or_default().entry(schedule).or_insert_with(role);
-        own.times.insert(turn(row), seconds);
+        own.times.insert(turn, seconds);
     }
     images
 }

@@ -7,6 +7,7 @@ use super::ranking::{MISS, capped, schedules_of, told_orders};
 use super::records_file::read_records;
 use super::statements::{Evidence, JOINT_LEVEL, Kind, Reproduction, Statement, Unjudged, judge_together};
 use super::together::Schedules;
+use super::turns::turns;
 use super::{Cell, Definition, MACHINE, Profile, RunFile, packed_rows, read_run_file};
 use crate::analysis::adjacent_pairs::{FEWEST_PROCESSES, by_process, log_ratio};
 use crate::analysis::confidence_sequence::Stopping;
@@ -127,7 +128,8 @@ impl Rows {
     }
 
     fn schedules(&self, cells: &[Cell]) -> BTreeMap<ImageKey, Schedules> {
-        schedules_of(&self.measured, &if self.uncapped { BTreeSet::new() } else { capped(cells) })
+        let shown_only = if self.uncapped { BTreeSet::new() } else { capped(cells) };
+        schedules_of(self.measured.iter().zip(turns(&self.measured)), &shown_only)
     }
 
     /// The exponent of RMSE against samples of each image, over its seeds.

@@ -78,7 +78,11 @@ impl PinPolicy {
             Self::None => return Ok(Vec::new()),
             Self::Compact => compact(topology),
             Self::Scatter => scattered(&topology.cpus.iter().collect::<Vec<_>>()),
-            Self::OnePerCore => topology.cores().iter().map(|core| core[0].id).collect(),
+            Self::OnePerCore => {
+                let mut firsts: Vec<&Cpu> = topology.cores().into_iter().map(|core| core[0]).collect();
+                firsts.sort_by_key(|cpu| std::cmp::Reverse(cpu.capacity));
+                firsts.into_iter().map(|cpu| cpu.id).collect()
+            }
             Self::Performance => {
                 let fast = topology.cpus.iter().filter(|cpu| Some(cpu.capacity) == fastest);
                 scattered(&fast.collect::<Vec<_>>())
@@ -171,6 +175,7 @@ mod tests {
         assert_eq!(cpus("performance", &topology, 2), [4, 5]);
         assert_eq!(cpus("compact", &topology, 3), [4, 5, 0]);
         assert_eq!(cpus("scatter", &topology, 3), [4, 5, 0]);
+        assert_eq!(cpus("one-per-core", &topology, 3), [4, 5, 0]);
     }
 
     #[test]

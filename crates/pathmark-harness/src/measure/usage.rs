@@ -53,6 +53,13 @@ pub(super) fn cpu_s() -> Option<f64> {
     Some((counted.user_time().num_microseconds() + counted.system_time().num_microseconds()) as f64 * 1e-6)
 }
 
+/// CPU seconds of the processes that this one started, as far as it has waited for their end.
+fn children_s() -> f64 {
+    let counted = getrusage(UsageWho::RUSAGE_CHILDREN);
+    let seconds = |counted: Counted| counted.user_time().num_microseconds() + counted.system_time().num_microseconds();
+    counted.map_or(0.0, |counted| seconds(counted) as f64 * 1e-6)
+}
+
 impl Usage {
     /// Reads the totals; `None` if the system does not report them.
     pub(super) fn now() -> Option<Self> {
@@ -115,6 +122,7 @@ pub(super) const FOREIGN_SHARE: f64 = 0.05;
 pub struct ForeignLoad {
     begun: Instant,
     before: Option<Usage>,
+    children_s: f64,
 }
 
 /// The shares of the processors' time that others took.
@@ -128,7 +136,7 @@ pub struct ForeignShares {
 
 impl ForeignLoad {
     pub fn begin() -> Self {
-        Self { begun: Instant::now(), before: Usage::now() }
+        Self { begun: Instant::now(), before: Usage::now(), children_s: children_s() }
     }
 
     /// The shares since; `None` if the system does not report them.
@@ -136,7 +144,9 @@ impl ForeignLoad {
         let seconds = self.begun.elapsed().as_secs_f64();
         let taken = Usage::now()?.since(&self.before?);
         let capacity_s = seconds * available_threads() as f64;
-        Some(ForeignShares { programs: taken.foreign_s? / capacity_s, host: taken.steal_s? / capacity_s, seconds })
+        // Processes that this one started and waited for are no others.
+        let programs = (taken.foreign_s? - (children_s() - self.children_s)).max(0.0) / capacity_s;
+        Some(ForeignShares { programs, host: taken.steal_s? / capacity_s, seconds })
     }
 
     /// A warning, if others took so much that they disturbed the measurement.
@@ -196,6 +206,24 @@ mod tests {
         if let Some(shares) = load.shares() {
             assert!(shares.programs >= 0.0 && shares.host >= 0.0 && shares.seconds >= 0.05, "{shares:?}");
         }
+    }
+
+    /// The load itself is unknown. That of a child is subtracted once the child has ended, so a child that keeps a
+    /// processor busy makes the share no larger by its own time.
+    #[test]
+    fn children_are_no_other_programs() {
+        let load = ForeignLoad::begin();
+        let own_s = children_s();
+        let busy = "i=0; while [ $i -lt 200000 ]; do i=$((i+1)); done";
+        assert!(std::process::Command::new("sh").args(["-c", busy]).status().unwrap().success());
+        let child_s = children_s() - own_s;
+        assert!(child_s > 0.01, "{child_s} s of the child were counted");
+        let Some(taken) = load.before.zip(Usage::now()).and_then(|(before, now)| now.since(&before).foreign_s) else {
+            return;
+        };
+        let shares = load.shares().unwrap();
+        let others_s = shares.programs * shares.seconds * available_threads() as f64;
+        assert!(others_s <= (taken - 0.9 * child_s).max(0.0) + 0.1, "{others_s} s of others, {taken} s with the child");
     }
 
     #[test]

@@ -208,8 +208,10 @@ impl<'a> Rows<'a> {
             Kind::MeanRatio { column, over } => {
                 let over: Vec<Item<'_>> = items(self.runs).filter(|item| over.admit(item.columns)).collect();
                 let [above, below] = [own, &over].map(|items| per_seed(items, column));
-                let units = above.len() + below.len();
-                Measurement::estimate(mean_ratio(&above, &below, level), Rule::Welch, units, Unit::Seed.noun())
+                // What both sides have counts: more units on one side alone make no ratio sure.
+                let (units, others) = (above.len().min(below.len()), above.len().max(below.len()));
+                let rule = Rule::Welch { others };
+                Measurement::estimate(mean_ratio(&above, &below, level), rule, units, Unit::Seed.noun())
             }
             Kind::RankCorrelation { x, y, by } => rank_correlation(own, [x, y], by, level),
             Kind::Checksum {} => checksums(own),
@@ -327,7 +329,7 @@ type Valued<'a> = (Item<'a>, f64);
 fn per_turn<'a>(items: &[Item<'a>], column: &str, keeps_pairs: bool) -> Vec<(Turn, Item<'a>, f64)> {
     let place = |item: &Item<'a>| {
         let Item { run, row, .. } = *item;
-        (run, row.cell.as_str(), (row.repetition, row.pair.filter(|_| keeps_pairs)))
+        (run, row.cell.as_str(), (row.turn.0, row.turn.1.filter(|_| keeps_pairs)))
     };
     let valued = items.iter().filter_map(|item| Some((place(item), (*item, number(item.columns, column)?))));
     let of_turn = |((_, _, turn), all): (Place<'_>, Vec<Valued<'a>>)| {

@@ -41,7 +41,10 @@ pub(super) enum Rule {
     /// The ratio of adjacent pairs over processes, as figures and tables have it.
     Pairs,
     /// A ratio of two means with the interval of Student's t and Welch's degrees of freedom.
-    Welch,
+    Welch {
+        /// The units of the side that has more; those of the other side count.
+        others: usize,
+    },
     /// A line through points with the interval of Student's t.
     Line,
     /// An interval from leaving out one seed after the other.
@@ -108,7 +111,7 @@ impl Measurement {
     /// An estimate that has an interval of its own.
     pub(super) fn estimate(estimate: Option<Estimate>, rule: Rule, units: usize, noun: &'static str) -> Option<Self> {
         let Estimate { value, interval } = estimate?;
-        let scale = if rule == Rule::Welch { Scale::Logarithmic } else { Scale::Linear };
+        let scale = if matches!(rule, Rule::Welch { .. }) { Scale::Logarithmic } else { Scale::Linear };
         let half_width = 0.5 * (scale.of(interval.high) - scale.of(interval.low));
         // The deviation of so many units whose mean would have this interval.
         let t = t_quantile(interval.level, units.saturating_sub(1));
@@ -202,7 +205,9 @@ impl Measurement {
             }
             Rule::Pairs => format!("geometric mean of {units}, interval of Student's t of logarithms"),
             Rule::Mean => format!("mean of {units}, interval of Student's t"),
-            Rule::Welch => format!("{units} on both sides, interval of Student's t with Welch's degrees of freedom"),
+            Rule::Welch { others } => {
+                format!("{units} beside {others}, interval of Student's t with Welch's degrees of freedom")
+            }
             Rule::Line => format!("line through {units}, interval of Student's t"),
             Rule::Jackknife => format!("{units}, interval by leaving out one after the other"),
             Rule::Ranks => format!("{units}, interval by Fisher's transformation"),

@@ -6,6 +6,7 @@ pub(crate) mod schedule;
 
 use crate::analysis::quantile::median;
 use crate::analysis::ranking::Turn;
+use crate::experiment::turns;
 use crate::measure::{ImageKey, Record, ScheduleKey};
 use schedule::Schedule;
 use std::collections::hash_map::Entry;
@@ -20,13 +21,16 @@ pub(crate) struct Row {
     as_written: Option<Box<Record>>,
     pub(crate) image: ImageKey,
     pub(crate) schedule: Schedule,
+    /// The process, and the pair, of which only runs that followed each other share the number.
+    pub(crate) turn: Turn,
     /// The runs of its process in adjacent pairs, if it stands for several.
     runs: Vec<Self>,
 }
 
 impl Row {
     pub(crate) fn new(record: Record, as_written: Option<Box<Record>>, schedule: Schedule) -> Self {
-        Self { image: record.image_key(), record, as_written, schedule, runs: Vec::new() }
+        let turn = (record.repetition, record.pair);
+        Self { image: record.image_key(), record, as_written, schedule, turn, runs: Vec::new() }
     }
 
     /// Its columns as they are in the file.
@@ -38,7 +42,7 @@ impl Row {
     pub(crate) fn key(&self, forget: impl Fn(&mut ImageKey, &mut ScheduleKey)) -> (ImageKey, ScheduleKey, Turn) {
         let (mut image, mut schedule) = (self.image.clone(), self.schedule.key.clone());
         forget(&mut image, &mut schedule);
-        (image, schedule, (self.repetition, self.pair))
+        (image, schedule, self.turn)
     }
 
     /// Its runs: itself, or all of its process.
@@ -62,7 +66,9 @@ impl Deref for Row {
 
 /// One row for each process of a cell: its run of median time. Runs of a process share its memory layout, so they count as
 /// one value wherever they are not compared within their pair.
-pub(crate) fn by_process(rows: Vec<Row>) -> Vec<Row> {
+pub(crate) fn by_process(mut rows: Vec<Row>) -> Vec<Row> {
+    let turns = turns(&rows.iter().map(|row| &row.record).collect::<Vec<&Record>>());
+    rows.iter_mut().zip(turns).for_each(|(row, turn)| row.turn = turn);
     let mut places: HashMap<(String, u32), usize> = HashMap::new();
     let mut processes: Vec<Vec<Row>> = Vec::new();
     for row in rows {
@@ -83,6 +89,7 @@ pub(crate) fn by_process(rows: Vec<Row>) -> Vec<Row> {
         order.sort_by(|a, b| runs[*a].makespan_s.unwrap_or(0.0).total_cmp(&runs[*b].makespan_s.unwrap_or(0.0)));
         let own = &runs[order[order.len() / 2]];
         let row = Row::new(own.record.clone(), own.as_written.clone(), own.schedule.clone());
+        let row = Row { turn: own.turn, ..row };
         if runs.len() == 1 && row.pair.is_none() { row } else { Row { runs, ..row } }
     };
     processes.into_iter().map(typical).collect()
