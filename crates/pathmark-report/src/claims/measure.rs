@@ -208,7 +208,7 @@ impl<'a> Rows<'a> {
             Kind::MeanRatio { column, over } => {
                 let over: Vec<Item<'_>> = items(self.runs).filter(|item| over.admit(item.columns)).collect();
                 let [above, below] = [own, &over].map(|items| per_seed(items, column));
-                // What both sides have counts: more units on one side alone make no ratio sure.
+                // More units on one side alone make no ratio sure, so the smaller number counts.
                 let (units, others) = (above.len().min(below.len()), above.len().max(below.len()));
                 let rule = Rule::Welch { others };
                 Measurement::estimate(mean_ratio(&above, &below, level), rule, units, Unit::Seed.noun())
