@@ -12,8 +12,11 @@ mod progressive;
 mod sample_grid;
 mod shard;
 mod sum;
+mod summary;
+mod team;
 mod tile_buffer;
 mod whole;
+mod zeroed;
 
 pub use assembly::Assembly;
 pub use decomposition::{DECOMPOSITIONS, Decomposition, Entry};
@@ -25,5 +28,6 @@ pub use progressive::{ProgressiveFilm, Sections, sections};
 pub use sample_grid::SampleGrid;
 pub use shard::{Shard, ShardCut};
 pub use sum::{PixelSum, SAMPLE_BLOCK, SampleSum};
+pub use summary::Summary;
 pub use tile_buffer::TileBuffer;
 pub use whole::{Film, LARGEST_SIDE, Reserve, check_size, room};

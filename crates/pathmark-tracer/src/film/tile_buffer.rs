@@ -2,8 +2,12 @@
 
 use super::image::brightest;
 use super::whole::room;
-use super::{Bounds, PixelSum};
+use super::{Bounds, PixelSum, team};
 use crate::error::Result;
+use std::iter::repeat_with;
+
+/// Buffers that one thread makes at a time: a few megabytes of the usual tiles.
+const MADE_AT_ONCE: usize = 64;
 
 /// The pixels of a rectangle, row by row.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +27,23 @@ impl TileBuffer {
         let mut pixels = room(bounds.width(), bounds.height())?;
         pixels.resize(bounds.area(), PixelSum::default());
         Ok(Self { bounds, pixels })
+    }
+
+    /// Empty buffers for some rectangles, made and touched by up to `threads` threads. Fails if the system lacks the
+    /// memory.
+    pub fn all(rectangles: &[Bounds], threads: usize) -> Result<Vec<Self>> {
+        let groups = rectangles.chunks(MADE_AT_ONCE);
+        let mut made: Vec<Result<Vec<Self>>> = repeat_with(|| Ok(Vec::new())).take(groups.len()).collect();
+        let make = |(group, made): (&[Bounds], &mut Result<Vec<Self>>)| {
+            *made = group.iter().map(|bounds| Self::try_new(*bounds)).collect();
+        };
+        let threads = threads.min(groups.len());
+        team::for_each(groups.zip(&mut made), threads, make);
+        let mut all = Vec::with_capacity(rectangles.len());
+        for made in made {
+            all.extend(made?);
+        }
+        Ok(all)
     }
 
     pub fn bounds(&self) -> Bounds {

@@ -1,17 +1,18 @@
 //! The film: the sums of all pixels of an image.
 
 use super::image::brightest;
-use super::{Image, PixelSum, TileBuffer};
+use super::{Image, PixelSum, TileBuffer, team, zeroed};
 use crate::digest::Fingerprint;
 use crate::error::{Error, InputError, Result};
-use std::io;
-use std::sync::{Mutex, PoisonError};
-use std::thread::{Builder, scope};
+use std::io::{self, ErrorKind};
 
 /// Largest width and height.
 pub const LARGEST_SIDE: u32 = 1 << 16;
 /// Largest number of pixels: their sums take 3.5 GiB in the film and as much in the pieces.
 const LARGEST_AREA: u64 = 1 << 26;
+
+/// Pixels that one thread searches at a time.
+const SEARCHED_AT_ONCE: usize = 1 << 18;
 
 /// Refuses sizes that no film can have, before memory is allocated.
 pub fn check_size(width: u32, height: u32) -> Result<()> {
@@ -28,11 +29,13 @@ pub fn check_size(width: u32, height: u32) -> Result<()> {
 /// an allocation anywhere else would abort the program.
 pub fn room<T>(width: u32, height: u32) -> Result<Vec<T>> {
     let mut room = Vec::new();
-    room.try_reserve_exact(width as usize * height as usize).map_err(|e| {
-        let what = format!("{width}x{height} pixels");
-        Error::system("reserving memory for", what, io::Error::new(io::ErrorKind::OutOfMemory, e))
-    })?;
+    let refusal = |e| refused(width, height, io::Error::new(ErrorKind::OutOfMemory, e));
+    room.try_reserve_exact(width as usize * height as usize).map_err(refusal)?;
     Ok(room)
+}
+
+fn refused(width: u32, height: u32, refusal: io::Error) -> Error {
+    Error::system("reserving memory for", format!("{width}x{height} pixels"), refusal)
 }
 
 /// Memory that is reserved during hours of rendering for the pictures and files made from the film at the end.
@@ -67,9 +70,15 @@ impl Film {
 
     /// Creates an empty film. Fails if the system lacks the memory.
     pub fn try_new(width: u32, height: u32) -> Result<Self> {
-        let mut pixels = room(width, height)?;
-        pixels.resize(width as usize * height as usize, PixelSum::default());
+        let refusal = || refused(width, height, ErrorKind::OutOfMemory.into());
+        let pixels = zeroed::sums(width as usize * height as usize).ok_or_else(refusal)?;
         Ok(Self { width, height, pixels })
+    }
+
+    /// Takes all memory of an empty film from the system, with up to `threads` threads: whoever writes to the film need
+    /// not wait for it.
+    pub(super) fn touch(&mut self, threads: usize) {
+        zeroed::touch(&mut self.pixels, threads);
     }
 
     /// Creates a film from these sums, row by row.
@@ -111,26 +120,7 @@ impl Film {
                 }
             }
         };
-        if threads < 2 {
-            return bands.for_each(fill);
-        }
-        let waiting = Mutex::new(bands);
-        let work = || {
-            loop {
-                let next = waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
-                let Some(band) = next else { return };
-                fill(band);
-            }
-        };
-        scope(|scope| {
-            // If the system refuses a thread, the calling thread does the rest.
-            for _ in 1..threads {
-                if Builder::new().spawn_scoped(scope, work).is_err() {
-                    break;
-                }
-            }
-            work();
-        });
+        team::for_each(bands, threads, fill);
     }
 
     /// Copies the pixels for which `owns` is true, by column and row, from another film of the same size.
@@ -161,9 +151,15 @@ impl Film {
         image
     }
 
-    /// [`Image::brightest`] of its image.
-    pub fn brightest(&self) -> f64 {
-        brightest(self.pixels.iter().map(PixelSum::mean))
+    /// [`Image::brightest`] of its image, found by up to `threads` threads.
+    pub fn brightest(&self, threads: usize) -> f64 {
+        let parts: Vec<&[PixelSum]> = self.pixels.chunks(SEARCHED_AT_ONCE).collect();
+        let mut found = vec![0.0; parts.len()];
+        let threads = threads.min(parts.len());
+        team::for_each(parts.iter().zip(&mut found), threads, |(part, found): (&&[PixelSum], &mut f64)| {
+            *found = brightest(part.iter().map(PixelSum::mean));
+        });
+        found.into_iter().fold(0.0, f64::max)
     }
 
     /// SHA-256 over the size and the bits of every sum, shortened to 16 hexadecimal digits. The sign of zero is

@@ -2,7 +2,7 @@
 
 use super::{Delivery, Entry, Output};
 use crate::error::Result;
-use crate::film::{Film, Piece, TileBuffer};
+use crate::film::{Bounds, Film, TileBuffer};
 use crate::kernel::{Counts, Kernel};
 use crossbeam::atomic::AtomicCell;
 
@@ -21,8 +21,9 @@ pub(super) struct Slots {
 impl Slots {
     /// Empty buffers for all pieces: allocated and touched here, so that jobs need not do it.
     pub(super) fn new(delivery: Delivery) -> Result<Self> {
-        let buffer = |piece: &Piece| Ok(AtomicCell::new(Some(Box::new(TileBuffer::try_new(piece.bounds)?))));
-        let cells = delivery.plan.pieces().iter().map(buffer).collect::<Result<_>>()?;
+        let rectangles: Vec<Bounds> = delivery.plan.pieces().iter().map(|piece| piece.bounds).collect();
+        let tiles = TileBuffer::all(&rectangles, delivery.threads)?;
+        let cells = tiles.into_iter().map(|tile| AtomicCell::new(Some(Box::new(tile)))).collect();
         Ok(Self { delivery, cells })
     }
 
