@@ -88,12 +88,17 @@ digest() { if [ -e "$1" ]; then sha256sum <"$1"; else echo "no file"; fi; }
 folder() { echo "$kept/$(sha256sum <"$1" | cut -c 1-12)/$2"; }
 
 images() {
-    local mine theirs
-    mine=$(folder target/debug/pathmark "$(uname -m)")
+    local mine theirs rounds=1
+    # A device has no program for half of the renders.
+    [ "$architecture" != devices ] || rounds=3
+    mine=$(folder target/debug/pathmark "$(uname -m)-$rounds")
     if [ "$architecture" = devices ]; then theirs=$mine-devices; else theirs=$(folder "$root/target/$target/debug/pathmark" "$architecture"); fi
     mkdir -p "$mine" "$theirs"
     # Named only when it is whole, because a run may be interrupted.
-    [ -e "$mine.options" ] || { bash tests/portability/options.sh target/debug/pathmark >"$work/options" && mv "$work/options" "$mine.options"; }
+    if [ ! -e "$mine.options" ]; then
+        PATHMARK_ROUNDS=$rounds bash tests/portability/options.sh target/debug/pathmark >"$work/options"
+        mv "$work/options" "$mine.options"
+    fi
     bash tests/portability/checksums.sh simd "$mine.options" "$mine" target/debug/pathmark
     if [ "$architecture" = devices ]; then
         bash tests/portability/checksums.sh devices "$mine.options" "$theirs" target/debug/pathmark
