@@ -10,8 +10,8 @@
 # PATHMARK_PORTABILITY is the folder of the emulator, of the compilers and of what they make [default: ~/.cache/pathmark-portability]. The first run
 # installs a small Debian there, whose compiler has Rust's library for many processors. PATHMARK_PARTS names what to do, some of
 # "images files units paths contract cases" [default: all]; the last four are tests under emulation. Each emulated program may take PATHMARK_LIMIT
-# seconds [default: 600]; one that takes longer is named. target/portability keeps the checksums and verdicts of each program, so an interrupted run
-# continues.
+# seconds [default: 600], and a program of tests three times as many; one that takes longer is named. target/portability keeps the checksums and
+# verdicts of each program, so an interrupted run continues.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 fail() { printf '%s\n' "$1" >&2; exit "$2"; }
@@ -168,6 +168,8 @@ verdicts() {
 }
 
 tested() {
+    # A test program has many tests.
+    local emulator=(timeout --foreground --kill-after=10 $((3 * limit)) "${emulator[@]:4}")
     within cargo test --quiet --locked --offline --target "$target" -p pathmark-tracer -p pathmark-strategy -p pathmark-lanes "$@"
 }
 units() { tested --lib; }
