@@ -14,6 +14,11 @@ trap 'rm -rf "$scratch"' EXIT
 mkdir -p "$folder"
 processors=$(getconf _NPROCESSORS_ONLN)
 
+# The device `host` calls a C compiler.
+export PATHMARK_COMPILER=${CC:-cc} PATHMARK_COMPILED=$scratch
+CC=$(cd "$(dirname "$0")" && pwd)/compiler.sh
+export CC
+
 # The options of a render with this instruction set, or on this device. A driver takes seconds to compile a program: the one with all effects serves
 # every scene.
 with() {

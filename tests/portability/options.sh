@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Prints the options of the renders whose checksums are compared, a line for each. Each scene has each estimator in both precisions; samplers,
-# strategies and decompositions take turns. Like checksums.sh and compare.sh, it runs on macOS, too, whose Bash is of version 3.2.
+# strategies and decompositions take turns. In each of PATHMARK_ROUNDS rounds [default: 1] they begin with the next one. Like checksums.sh and
+# compare.sh, it runs on macOS, too, whose Bash is of version 3.2.
 #
 #   tests/portability/options.sh COMMAND... >OPTIONS
 set -euo pipefail
@@ -30,14 +31,16 @@ estimators=($(names estimators))
 samplers=($(deterministic))
 strategies=($(names strategies))
 cuts=(rows bands:5 grid:6 tiles:5x4 tiles:3x3:hilbert samples:16:8x8)
-turn=0
-for scene in "${scenes[@]}"; do
-    for estimator in "${estimators[@]}"; do
-        for precision in f64 f32; do
-            echo "$scene --size 12x9 --spp 4 --threads 3 --estimator $estimator --precision $precision" \
-                "--sampler ${samplers[turn % ${#samplers[@]}]} --strategy ${strategies[turn % ${#strategies[@]}]}" \
-                "--decomposition ${cuts[turn % ${#cuts[@]}]}"
+for ((round = 0; round < ${PATHMARK_ROUNDS:-1}; round++)); do
+    turn=$round
+    for scene in "${scenes[@]}"; do
+        for estimator in "${estimators[@]}"; do
+            for precision in f64 f32; do
+                echo "$scene --size 12x9 --spp 4 --threads 3 --estimator $estimator --precision $precision" \
+                    "--sampler ${samplers[turn % ${#samplers[@]}]} --strategy ${strategies[turn % ${#strategies[@]}]}" \
+                    "--decomposition ${cuts[turn % ${#cuts[@]}]}"
+            done
+            turn=$((turn + 1))
         done
-        turn=$((turn + 1))
     done
 done

@@ -10,8 +10,8 @@
 # PATHMARK_PORTABILITY is the folder of the emulator, of the compilers and of what they make [default: ~/.cache/pathmark-portability]. The first run
 # installs a small Debian there, whose compiler has Rust's library for many processors. PATHMARK_PARTS names what to do, some of
 # "images files units paths contract cases" [default: all]; the last four are tests under emulation. Each emulated program may take PATHMARK_LIMIT
-# seconds [default: 600]; one that takes longer is named. target/portability keeps the checksums and verdicts of each program, so an interrupted run
-# continues.
+# seconds [default: 600], and a program of tests three times as many; one that takes longer is named. target/portability keeps the checksums and
+# verdicts of each program, so an interrupted run continues.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 fail() { printf '%s\n' "$1" >&2; exit "$2"; }
@@ -88,12 +88,17 @@ digest() { if [ -e "$1" ]; then sha256sum <"$1"; else echo "no file"; fi; }
 folder() { echo "$kept/$(sha256sum <"$1" | cut -c 1-12)/$2"; }
 
 images() {
-    local mine theirs
-    mine=$(folder target/debug/pathmark "$(uname -m)")
+    local mine theirs rounds=1
+    # A device has no program for half of the renders.
+    [ "$architecture" != devices ] || rounds=3
+    mine=$(folder target/debug/pathmark "$(uname -m)-$rounds")
     if [ "$architecture" = devices ]; then theirs=$mine-devices; else theirs=$(folder "$root/target/$target/debug/pathmark" "$architecture"); fi
     mkdir -p "$mine" "$theirs"
     # Named only when it is whole, because a run may be interrupted.
-    [ -e "$mine.options" ] || { bash tests/portability/options.sh target/debug/pathmark >"$work/options" && mv "$work/options" "$mine.options"; }
+    if [ ! -e "$mine.options" ]; then
+        PATHMARK_ROUNDS=$rounds bash tests/portability/options.sh target/debug/pathmark >"$work/options"
+        mv "$work/options" "$mine.options"
+    fi
     bash tests/portability/checksums.sh simd "$mine.options" "$mine" target/debug/pathmark
     if [ "$architecture" = devices ]; then
         bash tests/portability/checksums.sh devices "$mine.options" "$theirs" target/debug/pathmark
@@ -163,6 +168,8 @@ verdicts() {
 }
 
 tested() {
+    # A test program has many tests.
+    local emulator=(timeout --foreground --kill-after=10 $((3 * limit)) "${emulator[@]:4}")
     within cargo test --quiet --locked --offline --target "$target" -p pathmark-tracer -p pathmark-strategy -p pathmark-lanes "$@"
 }
 units() { tested --lib; }
