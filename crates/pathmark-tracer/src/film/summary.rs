@@ -1,4 +1,4 @@
-//! What a record tells of a film: one pass over the pixels, which are more than the caches hold.
+//! The numbers that a record tells of a film, by one pass over the pixels, which are more than the caches hold.
 
 use super::{Film, Noise};
 
