@@ -174,9 +174,7 @@ impl RunTotals {
         let spec = &setup.settings().spec;
         let (width, height) = (spec.width, spec.height);
         // All memory known to be needed is reserved first: a refusal after hours of work would lose them.
-        let mut films = Sections::new(width, height, sections)?;
-        let threads = setup.settings().threads.min(available_threads());
-        films.touch(threads);
+        let films = Sections::new(width, height, sections)?;
         if self.reserve.get_mut().pixels() == 0 {
             self.reserve.set(Reserve::new(width, height)?);
         }
@@ -187,7 +185,11 @@ impl RunTotals {
         if setup.decomposition.is_by_cost() {
             self.pilot_s += before_pilot.elapsed().as_secs_f64();
         }
-        let output = (setup.output.new)(Delivery { plan: Arc::clone(&plan), films, threads })?;
+        let output = (setup.output.new)(Delivery {
+            plan: Arc::clone(&plan),
+            films,
+            threads: setup.settings().threads.min(available_threads()),
+        })?;
         let claims = PieceClaims::new(plan.len(), !kernel.beside().is_empty());
         let run = Arc::new(Run {
             kernel: Arc::clone(&kernel),

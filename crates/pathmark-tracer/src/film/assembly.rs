@@ -24,11 +24,6 @@ impl Assembly {
         Ok(Self { film: Film::try_new(width, height)?, samples, waiting: HashMap::new() })
     }
 
-    /// Takes all memory of the film from the system, with up to `threads` threads.
-    pub(super) fn touch(&mut self, threads: usize) {
-        self.film.touch(threads);
-    }
-
     /// Adds a piece that was rendered into `tile`. Every piece must be added exactly once.
     pub fn add(&mut self, samples: &Range<u32>, mut tile: TileBuffer) {
         if *samples == self.samples {

@@ -16,7 +16,6 @@ mod summary;
 mod team;
 mod tile_buffer;
 mod whole;
-mod zeroed;
 
 pub use assembly::Assembly;
 pub use decomposition::{DECOMPOSITIONS, Decomposition, Entry};

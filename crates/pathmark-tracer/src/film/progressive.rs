@@ -44,11 +44,6 @@ impl Sections {
         Ok(Self { ends: sections.iter().map(|samples| samples.end).collect(), assemblies })
     }
 
-    /// Takes all memory of the films from the system, with up to `threads` threads, before a run that is timed.
-    pub fn touch(&mut self, threads: usize) {
-        self.assemblies.iter_mut().for_each(|assembly| assembly.touch(threads));
-    }
-
     /// Adds a piece that was rendered into `tile`. All its samples must lie in one section. Every piece must be added
     /// exactly once.
     pub fn add(&mut self, samples: &Range<u32>, tile: TileBuffer) {

@@ -1,10 +1,10 @@
 //! The film: the sums of all pixels of an image.
 
 use super::image::brightest;
-use super::{Image, PixelSum, TileBuffer, team, zeroed};
+use super::{Image, PixelSum, TileBuffer, team};
 use crate::digest::Fingerprint;
 use crate::error::{Error, InputError, Result};
-use std::io::{self, ErrorKind};
+use std::io;
 
 /// Largest width and height.
 pub const LARGEST_SIDE: u32 = 1 << 16;
@@ -29,13 +29,11 @@ pub fn check_size(width: u32, height: u32) -> Result<()> {
 /// an allocation anywhere else would abort the program.
 pub fn room<T>(width: u32, height: u32) -> Result<Vec<T>> {
     let mut room = Vec::new();
-    let refusal = |e| refused(width, height, io::Error::new(ErrorKind::OutOfMemory, e));
-    room.try_reserve_exact(width as usize * height as usize).map_err(refusal)?;
+    room.try_reserve_exact(width as usize * height as usize).map_err(|e| {
+        let what = format!("{width}x{height} pixels");
+        Error::system("reserving memory for", what, io::Error::new(io::ErrorKind::OutOfMemory, e))
+    })?;
     Ok(room)
-}
-
-fn refused(width: u32, height: u32, refusal: io::Error) -> Error {
-    Error::system("reserving memory for", format!("{width}x{height} pixels"), refusal)
 }
 
 /// Memory that is reserved during hours of rendering for the pictures and files made from the film at the end.
@@ -70,15 +68,9 @@ impl Film {
 
     /// Creates an empty film. Fails if the system lacks the memory.
     pub fn try_new(width: u32, height: u32) -> Result<Self> {
-        let refusal = || refused(width, height, ErrorKind::OutOfMemory.into());
-        let pixels = zeroed::sums(width as usize * height as usize).ok_or_else(refusal)?;
+        let mut pixels = room(width, height)?;
+        pixels.resize(width as usize * height as usize, PixelSum::default());
         Ok(Self { width, height, pixels })
-    }
-
-    /// Takes all memory of an empty film from the system, with up to `threads` threads: whoever writes to the film need
-    /// not wait for it.
-    pub(super) fn touch(&mut self, threads: usize) {
-        zeroed::touch(&mut self.pixels, threads);
     }
 
     /// Creates a film from these sums, row by row.
