@@ -1,11 +1,10 @@
 //! Schedules that were measured together: only they can be compared.
 //!
 //! A repetition is a block of rows that were measured shortly after each other. Parts of a sweep (`run --shard`) have no
-//! repetition in common, because each ran on its own, perhaps on another machine. In pairs, a turn is such a block: groups of
-//! compared cells have no turn in common. Every part has the serial runs that its cells are compared with.
+//! repetition in common, because each ran on its own, perhaps on another machine. Every part has the serial runs that its
+//! cells are compared with.
 
 use super::diff::Times;
-use crate::analysis::ranking::Turn;
 use std::collections::{BTreeMap, BTreeSet};
 
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -19,9 +18,9 @@ pub(super) struct Timed {
 
 pub(super) type Schedules = BTreeMap<String, Timed>;
 
-/// Joins all sets of turns in which a schedule has times to one set.
-fn join(sets: &mut Vec<BTreeSet<Turn>>, times: &Times) {
-    let mut joined: BTreeSet<Turn> = times.keys().copied().collect();
+/// Joins all sets of repetitions in which a schedule has times to one set.
+fn join(sets: &mut Vec<BTreeSet<u32>>, times: &Times) {
+    let mut joined: BTreeSet<u32> = times.keys().map(|(repetition, _)| *repetition).collect();
     sets.retain(|set| {
         let is_apart = set.is_disjoint(&joined);
         if !is_apart {
@@ -37,18 +36,18 @@ fn join(sets: &mut Vec<BTreeSet<Turn>>, times: &Times) {
 pub(super) fn parts(schedules: &Schedules) -> Vec<Schedules> {
     let mut sets = Vec::new();
     schedules.values().filter(|own| !own.is_serial).for_each(|own| join(&mut sets, &own.times));
-    let is_in = |sets: &[BTreeSet<Turn>], turn: &Turn| sets.iter().any(|set| set.contains(turn));
-    let is_alone = |own: &&Timed| own.is_serial && !own.times.keys().any(|turn| is_in(&sets, turn));
+    let is_in = |sets: &[BTreeSet<u32>], repetition: &u32| sets.iter().any(|set| set.contains(repetition));
+    let is_alone = |own: &&Timed| own.is_serial && !own.times.keys().any(|(repetition, _)| is_in(&sets, repetition));
     // Serial schedules that were measured with no other are compared with each other.
     let alone: Vec<&Timed> = schedules.values().filter(is_alone).collect();
     for own in alone {
         join(&mut sets, &own.times);
     }
     sets.sort_by_key(|set| set.first().copied());
-    let part = |set: &BTreeSet<Turn>| {
+    let part = |set: &BTreeSet<u32>| {
         let within = |(name, own): (&String, &Timed)| {
             let mut own = own.clone();
-            own.times.retain(|turn, _| set.contains(turn));
+            own.times.retain(|(repetition, _), _| set.contains(repetition));
             (!own.times.is_empty()).then(|| (name.clone(), own))
         };
         schedules.iter().filter_map(within).collect()
