@@ -313,7 +313,7 @@ impl Record {
         let (counts, mut record) = (&outcome.counts, Self::of(setup));
         record.spp = outcome.spp;
         record.rounds = Some(outcome.rounds);
-        record.estimated_rmse = outcome.summary.noise.map(|noise| noise.mse.sqrt());
+        record.estimated_rmse = outcome.film.noise().map(|noise| noise.mse.sqrt());
         record.started_utc.clone_from(&outcome.started_utc);
         if let Some((scene, choice)) = setup.scene() {
             record.box_tests = Some(counts.box_tests);
@@ -360,9 +360,10 @@ impl Record {
         record.escaped_rays = Some(counts.escaped);
         record.truncated = Some(counts.truncated);
         record.invalid_samples = Some(counts.invalid);
-        record.variance = Some(outcome.summary.mean_variance);
-        record.mean_radiance = Some(outcome.summary.mean.iter().sum::<f64>() / 3.0);
-        record.black_pixels = Some(outcome.summary.black_pixels);
+        record.variance = Some(outcome.film.mean_variance());
+        let image = outcome.film.image();
+        record.mean_radiance = Some(image.mean().iter().sum::<f64>() / 3.0);
+        record.black_pixels = Some(image.pixels.iter().filter(|pixel| **pixel == [0.0; 3]).count() as u64);
         record.checksum = outcome.checksum.clone().unwrap_or_default();
         record.warnings = outcome.warned();
         record

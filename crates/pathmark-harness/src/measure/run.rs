@@ -10,7 +10,7 @@ use super::provenance::Provenance;
 use super::usage::{FOREIGN_SHARE, Usage};
 use super::{JobSpan, Setup, Trace, Warning, available_threads, utc_now};
 use crate::error::{Error, Result};
-use crate::film::{Film, Plan, Reserve, Sections, Summary};
+use crate::film::{Film, Plan, Reserve, Sections};
 use crate::film_file::FilmKey;
 use crate::kernel::{Counts, DeviceCosts, Kernel};
 use crate::strategy::Strategy;
@@ -27,15 +27,11 @@ pub(super) const SHORTEST_S: f64 = 5e-3;
 /// The system counts in hundredths of a second, once for each processor: less than this may be rounding error.
 const FOREIGN_LEAST_S: f64 = 0.03;
 
-/// Below this number of pixels, a thread costs more than it saves after a run.
-const SMALL: usize = 1 << 16;
-
 /// A function that another thread calls now and then with the number of jobs done.
 pub type Watch<'a> = Option<&'a (dyn Fn(u64) + Sync)>;
 
 pub struct Outcome {
     pub film: Film,
-    pub summary: Summary,
     /// Samples per pixel; their mean if the run was adaptive.
     pub spp: u32,
     pub rounds: u32,
@@ -282,20 +278,12 @@ impl RunTotals {
         }
         let kernel = setup.kernel().ok().map(|(kernel, _)| kernel);
         let before_exposure = Instant::now();
-        let threads = setup.settings().threads.min(available_threads());
-        let brightest = self.brightest.unwrap_or_else(|| film.brightest(threads));
+        let brightest = self.brightest.unwrap_or_else(|| film.brightest());
         let exposure_s = before_exposure.elapsed().as_secs_f64();
-        let checksum = || setup.is_deterministic().then(|| film.checksum());
-        let (summary, checksum) = if film.pixels().len() < SMALL {
-            (film.summary(), checksum())
-        } else {
-            side_by_side(|| film.summary(), checksum)
-        };
         Outcome {
             brightest,
             time_to_image_s: self.makespan_s + self.gather_s + self.merge_s + exposure_s,
-            summary,
-            checksum,
+            checksum: setup.is_deterministic().then(|| film.checksum()),
             warnings,
             remarks: kernel.as_ref().map(|kernel| kernel.remarks()).unwrap_or_default(),
             device: kernel.and_then(|kernel| kernel.costs()),
@@ -362,20 +350,6 @@ fn watched<T>(run: &Run, watch: Watch<'_>, work: impl FnOnce() -> Result<T>) -> 
             started.map_err(|e| Error::system("starting", "the thread that shows progress", e)).and_then(|_| work());
         drop(stop);
         done
-    })
-}
-
-/// Does both at a time, or one after the other if the system refuses a thread.
-fn side_by_side<A: Send, B>(first: impl Fn() -> A + Sync, second: impl FnOnce() -> B) -> (A, B) {
-    thread::scope(|scope| {
-        let other = thread::Builder::new().spawn_scoped(scope, &first);
-        let second = second();
-        let first = match other.map(thread::ScopedJoinHandle::join) {
-            Ok(Ok(first)) => first,
-            Ok(Err(panic)) => std::panic::resume_unwind(panic),
-            Err(_) => first(),
-        };
-        (first, second)
     })
 }
 

@@ -151,3 +151,31 @@ fn a_ratio_of_pairs_is_that_of_figures() {
     let words = in_pairs.rule_in_words();
     assert_eq!(words, "geometric mean of 8 repetitions, interval of Student's t of logarithms");
 }
+
+/// Two groups of compared cells, one after the other, in eight processes with two pairs each. Within a group a ratio is of
+/// pairs. Between groups it is of the processes' medians, although both groups count their pairs from 0.
+#[test]
+fn runs_of_two_groups_are_no_pairs() {
+    let mut all = Vec::new();
+    for repetition in 0..8 {
+        for (at, (strategy, seconds)) in [("a", 1.0), ("b", 2.0), ("a", 1.2), ("b", 2.4), ("c", 3.0), ("d", 6.0)]
+            .into_iter()
+            .chain([("c", 4.0), ("d", 8.0)])
+            .enumerate()
+        {
+            let (strategy, cell) = (strategy.to_string(), strategy.to_string());
+            let (pair, place) = (Some((at / 2 % 2) as u32), Some((at % 2) as u32));
+            let (run_order, makespan_s) = (u64::from(8 * repetition) + at as u64, Some(about(seconds, repetition)));
+            all.push(Record { repetition, pair, place, run_order, strategy, cell, makespan_s, ..row() });
+        }
+    }
+    let of = |[above, below]: [&str; 2]| {
+        let cells = format!("rows = {{ strategy = \"{above}\" }}\nover = {{ strategy = \"{below}\" }}");
+        answer(&all, &format!("statistic = \"paired-ratio\"\ncolumn = \"makespan_s\"\n{cells}\nat-least = 0.5"))
+            .2
+            .unwrap()
+    };
+    let (within, between) = (of(["b", "a"]), of(["c", "a"]));
+    assert_eq!((within.rule, between.rule, between.units), (Rule::Pairs, Rule::Median, 8));
+    assert!((within.value - 2.0).abs() < 1e-9 && (between.value - 3.5 / 1.1).abs() < 1e-9, "{within:?}, {between:?}");
+}

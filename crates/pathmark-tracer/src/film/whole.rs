@@ -11,9 +11,6 @@ pub const LARGEST_SIDE: u32 = 1 << 16;
 /// Largest number of pixels: their sums take 3.5 GiB in the film and as much in the pieces.
 const LARGEST_AREA: u64 = 1 << 26;
 
-/// Pixels that one thread searches at a time.
-const SEARCHED_AT_ONCE: usize = 1 << 18;
-
 /// Refuses sizes that no film can have, before memory is allocated.
 pub fn check_size(width: u32, height: u32) -> Result<()> {
     let sides = (1..=LARGEST_SIDE).contains(&width) && (1..=LARGEST_SIDE).contains(&height);
@@ -143,15 +140,9 @@ impl Film {
         image
     }
 
-    /// [`Image::brightest`] of its image, found by up to `threads` threads.
-    pub fn brightest(&self, threads: usize) -> f64 {
-        let parts: Vec<&[PixelSum]> = self.pixels.chunks(SEARCHED_AT_ONCE).collect();
-        let mut found = vec![0.0; parts.len()];
-        let threads = threads.min(parts.len());
-        team::for_each(parts.iter().zip(&mut found), threads, |(part, found): (&&[PixelSum], &mut f64)| {
-            *found = brightest(part.iter().map(PixelSum::mean));
-        });
-        found.into_iter().fold(0.0, f64::max)
+    /// [`Image::brightest`] of its image.
+    pub fn brightest(&self) -> f64 {
+        brightest(self.pixels.iter().map(PixelSum::mean))
     }
 
     /// SHA-256 over the size and the bits of every sum, shortened to 16 hexadecimal digits. The sign of zero is
