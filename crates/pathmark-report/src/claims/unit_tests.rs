@@ -165,7 +165,8 @@ fn runs_of_two_groups_are_no_pairs() {
         {
             let (strategy, cell) = (strategy.to_string(), strategy.to_string());
             let (pair, place) = (Some((at / 2 % 2) as u32), Some((at % 2) as u32));
-            let (run_order, makespan_s) = (u64::from(8 * repetition) + at as u64, Some(about(seconds, repetition)));
+            let (run_order, makespan_s) =
+                (u64::from(8 * repetition) + at as u64, Some(about(seconds, repetition + at as u32)));
             all.push(Record { repetition, pair, place, run_order, strategy, cell, makespan_s, ..row() });
         }
     }
@@ -177,5 +178,5 @@ fn runs_of_two_groups_are_no_pairs() {
     };
     let (within, between) = (of(["b", "a"]), of(["c", "a"]));
     assert_eq!((within.rule, between.rule, between.units), (Rule::Pairs, Rule::Median, 8));
-    assert!((within.value - 2.0).abs() < 1e-9 && (between.value - 3.5 / 1.1).abs() < 1e-9, "{within:?}, {between:?}");
+    assert!((within.value - 2.0).abs() < 5e-3 && (between.value - 3.5 / 1.1).abs() < 8e-3, "{within:?}, {between:?}");
 }
