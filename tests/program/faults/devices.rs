@@ -21,8 +21,8 @@ fn loader() -> Option<PathBuf> {
     files.find(|file| file.exists()).filter(|_| listed.out.contains("opencl:0"))
 }
 
-/// Compiles a library that replaces a driver's library.
-fn make_library(folder: &Path, source: &str, name: &str) {
+/// Compiles a library that takes the place of a driver's or the system's functions.
+pub(super) fn make_library(folder: &Path, source: &str, name: &str) {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(source);
     let library = folder.join(name);
     if !library.exists() {

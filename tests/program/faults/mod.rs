@@ -6,6 +6,8 @@ mod disk;
 mod kills;
 mod limits;
 mod locks;
+#[cfg(target_os = "linux")]
+mod pins;
 mod sweep;
 mod threads;
 

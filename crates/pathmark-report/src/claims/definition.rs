@@ -32,7 +32,7 @@
 //! no rows exist yet). A statistic without a prediction is a finding: a number of one's own, which needs neither quote nor reason nor expectation.
 //!
 //! Who changes a query, a prediction or an expectation writes the time into `frozen`: rows that were measured before cannot confirm or refute the claim in
-//! `claims --strict`. A commit cannot contain its own hash, so the time alone is enough.
+//! `claims --strict`. A commit cannot contain its own hash, so the next one adds it.
 
 use super::condition::{Conditions, known_columns};
 use super::plain_rows::PlainRows;
@@ -161,6 +161,12 @@ impl Claim {
     /// The time at which the claim was fixed, as `2026-01-31T12:00:00Z`.
     pub(super) fn frozen_utc(&self) -> &str {
         self.frozen.split(' ').next().unwrap_or_default()
+    }
+
+    /// When, and if told in which commit, the claim was fixed.
+    pub(super) fn fixed(&self) -> String {
+        let commit = self.frozen.split_once(' ').map(|(_, commit)| format!(" in commit {commit}"));
+        format!("{}{}", self.frozen_utc(), commit.unwrap_or_default())
     }
 
     /// The first field that every claim but a finding needs, and that this one lacks.

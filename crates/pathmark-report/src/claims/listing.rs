@@ -343,7 +343,7 @@ fn entry(answer: &Answer<'_>, base: &Path) -> String {
         let reason = Some(claim.reason.trim()).filter(|reason| !reason.is_empty());
         let reason = reason.map_or_else(String::new, |reason| format!(". {reason}"));
         let _ = writeln!(text, "- Predicted: {}{reason}", answer.predicted());
-        let _ = writeln!(text, "- Fixed at {}: {}", claim.frozen_utc(), answer.age());
+        let _ = writeln!(text, "- Fixed at {}: {}", claim.fixed(), answer.age());
     }
     if !claim.changed.is_empty() {
         let _ = writeln!(text, "- Changed: {}", claim.changed.trim());

@@ -297,7 +297,7 @@ const EXCERPTS: [(&str, &str); 4] = [
 ];
 
 #[test]
-fn each_claim_appears_once_and_quotes_its_report() {
+fn each_claim_appears_once_quotes_its_report_and_names_the_commit_that_fixed_it() {
     let reports = Report::all(&Lab::built_in()).unwrap();
     let mut ids: Vec<u32> = reports.iter().flat_map(|report| &report.claims).map(|claim| claim.id).collect();
     ids.sort_unstable();
@@ -306,6 +306,7 @@ fn each_claim_appears_once_and_quotes_its_report() {
         let (_, text) = EXCERPTS.iter().find(|(letter, _)| *letter == report.report).expect("excerpts of each report");
         for claim in &report.claims {
             assert!(text.contains(&claim.quote), "{}: {}", claim.id, claim.quote);
+            assert!(claim.fixed().contains("Z in commit "), "{}: {}", claim.id, claim.fixed());
         }
     }
 }
