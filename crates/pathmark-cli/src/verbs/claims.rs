@@ -97,7 +97,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
         }
     }
     if arguments.plan {
-        return plan(lab, &reports, arguments.form.json);
+        return plan(lab, &reports, &arguments.folders, arguments.form.json);
     }
     check_folders(arguments)?;
     if let Some(out) = &arguments.out {
