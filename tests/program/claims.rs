@@ -194,12 +194,18 @@ fn a_ledger_of_ones_own_is_measured_and_judged() {
     let told = |key: &str| verdicts.iter().map(|row| row[key].as_str().unwrap()).collect::<Vec<_>>();
     assert_eq!(told("verdict"), ["measured", "refuted"]);
     assert_eq!(told("measured"), ["4", "4"]);
+    for row in &verdicts {
+        let numbers = ["value", "low", "high", "level"].map(|key| row[key].as_f64().unwrap());
+        assert_eq!(numbers, [4.0, 4.0, 4.0, 1.0], "{row}");
+    }
+    assert_eq!((told("quote"), told("place")), (vec!["", "q"], vec!["", "p"]));
+    assert_eq!(told("frozen"), ["", "2000-01-01T00:00:00Z"]);
     let text = fs::read_to_string(folder.path().join("out/MINE.md")).unwrap();
     assert!(text.starts_with("# My numbers\n") && text.contains("\n| Samples. | 4 |"), "{text}");
     let table = fs::read_to_string(folder.path().join("out/claims/mine.csv")).unwrap();
     assert!(table.contains("\n1,own,measured,"), "{table}");
     // A file of the same name that is not such a list stays, and so does a wrong ledger's place of the fault.
-    fs::write(folder.path().join("out/MINE.md"), "notes").unwrap();
+    fs::write(folder.path().join("out/MINE.md"), "# My numbers\n\nNotes.\n").unwrap();
     let refused = ["claims", "out", "--ledger", "mine.toml", "--out", "out"];
     assert!(finish(pathmark(folder.path(), &refused)).with_code(2).err.contains("MINE.md"));
     fs::write(folder.path().join("mine.toml"), ledger.replace("quote = \"q\"\n", "")).unwrap();

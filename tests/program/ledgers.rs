@@ -1,5 +1,6 @@
 //! Ledgers from outside the program: `examples/ledgers`.
 
+use crate::experiment::{TINY, write_tiny};
 use crate::program::{finish, in_memory, pathmark};
 use serde_json::{Value, json};
 use std::fs;
@@ -126,4 +127,66 @@ fn a_folder_of_ledgers_is_read_together_and_planned() {
     assert!(text.starts_with("# The claims of papers\n"), "{text}");
     fs::create_dir(folder.path().join("empty")).unwrap();
     assert!(finish(pathmark(folder.path(), &["claims", ".", "--ledger", "empty"])).with_code(2).err.contains(".toml"));
+}
+
+/// A typing error in a query, or a claim without rows, fails `--strict`, and the starter has the time of its making.
+#[test]
+fn typing_errors_do_not_pass_a_strict_check() {
+    let folder = in_memory();
+    let rows = "command,n,repetition,seconds,started_utc\n";
+    let row = |command: &str, repetition: u32, seconds: u32| {
+        format!("{command} 100000,100000,{repetition},{seconds}.{repetition},9999-01-01T00:00:00Z\n")
+    };
+    let all: String = (0..6).flat_map(|own| [row("quick", own, 1), row("bubble", own, 90)]).collect();
+    fs::write(folder.path().join("commands.csv"), format!("{rows}{all}")).unwrap();
+    let ledger = fs::read_to_string(example("sorting.toml")).unwrap();
+    let first = ledger.split("[[claim]]").take(2).collect::<Vec<&str>>().join("[[claim]]");
+    let write = |text: &str| fs::write(folder.path().join("own.toml"), text).unwrap();
+    let strict = || finish(pathmark(folder.path(), &["claims", ".", "--ledger", "own.toml", "--strict"]));
+    write(&first);
+    strict().with_code(0);
+    write(&first.replace("\"bubble 100000\"", "\"buble 100000\""));
+    let error = strict().with_code(2).err;
+    assert!(
+        error.contains("own.toml:29:20: rows.command = buble 100000") && error.contains("bubble 100000, quick"),
+        "{error}"
+    );
+    write(&first.replace("commands.csv\"", "comands.csv\""));
+    assert!(strict().with_code(2).err.contains("own.toml:9:8: file = comands.csv"));
+    // Rows of an experiment may be absent, which `--strict` does not expect.
+    let of_experiment = "[[claim]]\nid = 3\nclaim = \"c\"\nexperiment = \"thread-scalin\"\nstatistic = \"value\"\ncolumn = \"spp\"\nlevel = 0.95\n";
+    write(&format!("{first}{of_experiment}"));
+    let told = strict().with_code(1);
+    assert!(told.err.contains("claims 3 have no rows that answer them"), "{}", told.err);
+    assert!(told.out.contains("No judged folder has rows of thread-scalin."), "{}", told.out);
+    finish(pathmark(folder.path(), &["claims", ".", "--ledger", "own.toml"])).with_code(0);
+
+    let before = pathmark::measure::utc_now();
+    finish(pathmark(folder.path(), &["new", "claims", "paper"])).with_code(0);
+    let text = fs::read_to_string(folder.path().join("paper.toml")).unwrap();
+    let frozen = text.split_once("\nfrozen = \"").unwrap().1.split_once('"').unwrap().0.to_string();
+    assert!(before <= frozen && frozen <= pathmark::measure::utc_now(), "{before} {frozen}");
+    finish(pathmark(folder.path(), &["claims", ".", "--ledger", "paper.toml"])).with_code(0);
+}
+
+/// The plan knows the definitions of rows in the judged folders, and those in the current one.
+#[test]
+fn a_plan_knows_experiments_of_ones_own() {
+    let folder = in_memory();
+    write_tiny(folder.path(), TINY);
+    fs::write(folder.path().join("paper.toml"), crate::artifact::ledger()).unwrap();
+    let plan = |folders: &[&str]| {
+        let words = [&["claims"][..], folders, &["--ledger", "paper.toml", "--plan", "--json"]].concat();
+        let told: Vec<Value> = serde_json::from_str(&finish(pathmark(folder.path(), &words)).with_code(0).out).unwrap();
+        assert!(told[0]["command"] == "", "{told:?}");
+        (told[1]["command"].as_str().unwrap().to_string(), told[1]["bytes"].as_u64())
+    };
+    let (command, bytes) = plan(&[]);
+    assert!(command == "pathmark run tiny.toml --quick" && bytes > Some(0), "{command}");
+    let words: Vec<&str> = command.split(' ').skip(1).collect();
+    finish(pathmark(folder.path(), &words)).with_code(0);
+    fs::remove_file(folder.path().join("tiny.toml")).unwrap();
+    let (command, bytes) = plan(&["none", "out"]);
+    assert!(command == "pathmark replicate out/tiny" && bytes > Some(0), "{command}");
+    assert_eq!(plan(&["none"]), (String::new(), None));
 }

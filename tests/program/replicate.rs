@@ -177,3 +177,19 @@ fn wrong_folders_and_margins_are_refused() {
         assert!(said.contains(told), "{said}");
     }
 }
+
+/// Texts of the user's that begin like the program's own stay.
+#[test]
+fn notes_on_a_replication_are_not_overwritten() {
+    let folder = in_memory();
+    write_tiny(folder.path(), PAIRED);
+    finish(pathmark(folder.path(), &["run", "tiny.toml", "--out", "theirs"])).with_code(0);
+    let path = folder.path().join("here/REPLICATION.md");
+    fs::create_dir(folder.path().join("here")).unwrap();
+    for notes in ["# Replication notes\n\nMine.\n", "# Replication of theirs\n\nStatements of theirs: mine.\n"] {
+        fs::write(&path, notes).unwrap();
+        let said = finish(pathmark(folder.path(), &["replicate", "theirs", "--out", "here"])).with_code(2).err;
+        assert!(said.contains("REPLICATION.md: already exists"), "{said}");
+        assert_eq!(fs::read_to_string(&path).unwrap(), notes);
+    }
+}

@@ -3,7 +3,7 @@
 use super::plan_of_claims::plan;
 use super::prelude::*;
 use crate::console::markdown;
-use crate::report::claims::{self, Agreement, Answer, Listing, Report, judge};
+use crate::report::claims::{self, Agreement, Answer, Listing, Report, check_files, judge};
 
 /// `pathmark claims out --report A`
 #[derive(Args)]
@@ -30,7 +30,8 @@ pub(crate) struct Arguments {
     compare: Option<PathBuf>,
     #[command(flatten)]
     form: Form,
-    /// Exit with code 1 if a verdict differs from the expected one, or if its bound is not older than the rows that it judges
+    /// Exit with code 1 if a verdict differs from the expected one, if its bound is not older than the rows that it judges, or
+    /// if no rows answer a claim of the ledger that does not expect this
     #[arg(long)]
     strict: bool,
 }
@@ -56,6 +57,11 @@ struct Row<'a> {
     verdict: &'static str,
     expected: &'a str,
     measured: String,
+    /// The measured value, the ends of its interval and their confidence, with all digits.
+    value: Option<f64>,
+    low: Option<f64>,
+    high: Option<f64>,
+    level: Option<f64>,
     /// The rule that made the value and its interval, with the number of units.
     rule: String,
     predicted: String,
@@ -64,6 +70,11 @@ struct Row<'a> {
     to_settle: String,
     age: &'static str,
     source: Option<String>,
+    /// The report's words and their place.
+    quote: &'a str,
+    place: &'a str,
+    /// The time at which the claim was fixed.
+    frozen: &'a str,
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
@@ -86,13 +97,14 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
         }
     }
     if arguments.plan {
-        return plan(lab, &reports, arguments.form.json);
+        return plan(lab, &reports, &arguments.folders, arguments.form.json);
     }
     check_folders(arguments)?;
     if let Some(out) = &arguments.out {
-        listing.enter("out", out, &mut Files::default())?;
+        listing.enter("out", out, &mut Files::default(), &reports)?;
     }
     let answers = judge(lab, &reports, &arguments.folders)?;
+    check_files(&answers, arguments.strict)?;
     if let Some(out) = &arguments.out {
         listing.check_no_loss("out", &answers, out)?;
         create_folder("out", out)?;
@@ -113,6 +125,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     let problems = [
         of(&|answer| answer.is_unexpected(), "have unexpected verdicts"),
         of(&|answer| answer.is_bound_younger(), "have bounds that are not older than the rows that they judge"),
+        of(&|answer| answer.is_unanswered(), "have no rows that answer them"),
     ];
     let problems: Vec<String> = problems.into_iter().flatten().collect();
     if arguments.strict && !problems.is_empty() {
@@ -155,6 +168,7 @@ fn compare(arguments: &Arguments, earlier: &Path, lab: &Arc<Lab>) -> Result<()> 
 }
 
 fn row<'a>(answer: &'a Answer<'_>) -> Row<'a> {
+    let interval = answer.interval();
     Row {
         claim: answer.claim.id,
         report: &answer.report.report,
@@ -162,6 +176,10 @@ fn row<'a>(answer: &'a Answer<'_>) -> Row<'a> {
         verdict: answer.verdict.name(),
         expected: &answer.claim.expected,
         measured: answer.measured(),
+        value: answer.value(),
+        low: interval.map(|interval| interval.low),
+        high: interval.map(|interval| interval.high),
+        level: interval.map(|interval| interval.level),
         rule: answer.rule(),
         predicted: answer.predicted(),
         why: &answer.why,
@@ -169,6 +187,9 @@ fn row<'a>(answer: &'a Answer<'_>) -> Row<'a> {
         to_settle: answer.settled_by(),
         age: answer.age(),
         source: answer.source(),
+        quote: &answer.claim.quote,
+        place: &answer.claim.place,
+        frozen: answer.claim.frozen_utc(),
     }
 }
 

@@ -1,6 +1,7 @@
 //! `pathmark new experiment|scene|claims NAME`: a commented file to start from.
 
 use super::prelude::*;
+use crate::measure::utc_now;
 use crate::shell;
 use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write};
@@ -24,11 +25,19 @@ enum Kind {
     Claims,
 }
 
+/// The time in the starter of a ledger.
+const EXAMPLE: &str = "2026-01-31T12:00:00Z";
+
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
     let (text, verb) = match arguments.kind {
         Kind::Experiment => (include_str!("../../assets/starter-experiment.toml"), &["run"][..]),
         Kind::Scene => (include_str!("../../assets/starter-scene.toml"), &["render"][..]),
         Kind::Claims => (include_str!("../../assets/starter-claims.toml"), &["claims", "out", "--ledger"][..]),
+    };
+    let text = match utc_now() {
+        // A clock without a date leaves the example.
+        now if now.is_empty() => text.to_string(),
+        now => text.replace(EXAMPLE, &now),
     };
     if arguments.name.file_name().is_none() || arguments.name.as_os_str().as_encoded_bytes().ends_with(b"/") {
         return Err(InputError::new("name", arguments.name.display().to_string(), "is not the name of a file").into());

@@ -1,7 +1,7 @@
 //! The plan of `pathmark claims --plan`: for each claim the command that measures its rows, with seconds and bytes.
 
 use super::prelude::*;
-use crate::experiment::{Definition, Options, Plan, Prices, Profile, Sweep};
+use crate::experiment::{Definition, Options, Plan, Prices, Profile, Sweep, Theirs};
 use crate::report::claims::{Needs, Report};
 use crate::shell;
 use std::collections::BTreeMap;
@@ -21,8 +21,8 @@ struct Planned<'a> {
     why: String,
 }
 
-/// Prints for each claim the command that measures its rows, and what it takes.
-pub(super) fn plan(lab: &Arc<Lab>, reports: &[Report], as_json: bool) -> Result<()> {
+/// Prints for each claim the command that measures its rows, and what it takes. `folders` are those of rows.
+pub(super) fn plan(lab: &Arc<Lab>, reports: &[Report], folders: &[PathBuf], as_json: bool) -> Result<()> {
     let mut prices = Prices::new(lab);
     let mut plans: BTreeMap<String, Option<(String, Plan)>> = BTreeMap::new();
     let mut rows = Vec::new();
@@ -30,11 +30,13 @@ pub(super) fn plan(lab: &Arc<Lab>, reports: &[Report], as_json: bool) -> Result<
         let (command, plan, why) = match report.needs(claim) {
             Needs::Experiment(name) => {
                 if !plans.contains_key(&name) {
-                    plans.insert(name.clone(), plan_of(lab, &name, &mut prices)?);
+                    plans.insert(name.clone(), plan_of(lab, &name, folders, &mut prices)?);
                 }
                 match plans.get(&name).cloned().flatten() {
                     Some((command, plan)) => (command, Some(plan), String::new()),
-                    None => (String::new(), None, format!("no experiment is called {name}")),
+                    None => {
+                        (String::new(), None, format!("no experiment is called {name}, and there is no {name}.toml"))
+                    }
                 }
             }
             Needs::Table(file) => (String::new(), None, format!("rows of another program, in {file}")),
@@ -70,16 +72,30 @@ pub(super) fn plan(lab: &Arc<Lab>, reports: &[Report], as_json: bool) -> Result<
     print(&format!("\n{of}, each run once: about {seconds:.0} s, {:.0} MB", bytes as f64 / 1e6))
 }
 
-/// The command of an experiment at the reports' size, or else at the quick one, and its plan; `None` if there is no such
-/// experiment.
-fn plan_of(lab: &Arc<Lab>, name: &str, prices: &mut Prices<'_>) -> Result<Option<(String, Plan)>> {
-    if !Definition::known(lab).any(|(known, _)| known == name) {
-        return Ok(None);
-    }
-    let definition = Definition::load(lab, name)?;
-    let (profile, size) =
-        if definition.has(Profile::Reports) { (Profile::Reports, "--reports") } else { (Profile::Quick, "--quick") };
-    let options = Options { out: PathBuf::from("out"), profile, ..Options::default() };
+/// The command that measures an experiment, and its plan; `None` if there is no such experiment. It is one of the program,
+/// that of rows in these folders, or that of a definition in the current folder.
+fn plan_of(lab: &Arc<Lab>, name: &str, folders: &[PathBuf], prices: &mut Prices<'_>) -> Result<Option<(String, Plan)>> {
+    let file = format!("{name}.toml");
+    let is_known = Definition::known(lab).any(|(known, _)| known == name);
+    let measured = folders.iter().map(|folder| folder.join(name)).find(|own| own.join("experiment.toml").is_file());
+    let (definition, profile, out, command) = match measured.filter(|_| !is_known) {
+        Some(folder) => {
+            let Theirs { definition, profile, .. } = Theirs::read(lab, &folder)?;
+            (definition, profile, folder.join("again"), vec!["replicate".to_string(), folder.display().to_string()])
+        }
+        None if is_known || Path::new(&file).is_file() => {
+            let asked: &str = if is_known { name } else { &file };
+            let definition = Definition::load(lab, asked)?;
+            // The reports' size is that of the claims.
+            let mut sizes = [Profile::Reports, Profile::Quick, Profile::Full].into_iter();
+            let profile = sizes.find(|profile| definition.has(*profile)).unwrap_or_default();
+            let size = format!("--{}", profile.name());
+            (definition, profile, PathBuf::from("out"), vec!["run".to_string(), asked.to_string(), size])
+        }
+        None => return Ok(None),
+    };
+    // Nothing is written there.
+    let options = Options { out, profile, ..Options::default() };
     let plan = Sweep::new(&definition, &options, &mut Files::default())?.plan(prices)?;
-    Ok(Some((shell::command(["run", name, size]), plan)))
+    Ok(Some((shell::command(command.iter().map(String::as_str)), plan)))
 }

@@ -204,18 +204,24 @@ fn folders(theirs: &Path, wanted: &[String]) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-const HEADING: &str = "# Replication";
+const HEADING: &str = "# Replication of ";
 pub(super) const TEXT: &str = "REPLICATION.md";
 
-/// Whether a file is such a text, which a new one may replace.
+/// Whether a file is such a text, which a new one may replace: the sentence of counts is below the heading.
 fn is_replication(path: &Path) -> bool {
-    std::fs::read_to_string(path).is_ok_and(|text| text.starts_with(HEADING))
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let below = text.strip_prefix(HEADING).and_then(|rest| rest.split_once("\n\n"));
+    below.is_some_and(|(theirs, below)| {
+        let words = below.trim_start_matches(|sign: char| sign.is_ascii_digit());
+        let is_sentence = |noun: &str| words.starts_with(&format!(" {noun} of {theirs}: "));
+        words.len() < below.len() && (is_sentence("statement") || is_sentence("statements"))
+    })
 }
 
 /// The verdicts in Markdown: counts, all statements, those first that are not reproduced, and the machines.
 fn in_words(found: &Replication) -> String {
     let parts = [
-        format!("{HEADING} of {}", found.theirs),
+        format!("{HEADING}{}", found.theirs),
         sentence(found),
         notices(found).join("\n\n"),
         rule(found),

@@ -129,6 +129,14 @@ impl Conditions {
         self.0.keys().map(|column| &**column)
     }
 
+    /// The first value that none of these rows has, with its column.
+    pub(super) fn absent(&self, rows: &[&Columns]) -> Option<(&str, String)> {
+        self.0.iter().find_map(|(column, wanted)| {
+            let is_absent = |value: &&Value| !rows.iter().any(|row| value.admits(row, column));
+            Some((&**column, wanted.values().iter().find(is_absent)?.to_string()))
+        })
+    }
+
     /// The conditions that a row does not meet: column, its value, the required value.
     pub(super) fn differences(&self, row: &Columns) -> Vec<(String, String, String)> {
         let missed = |(column, wanted): (&Column, &Wanted)| {

@@ -35,12 +35,14 @@
 //! `claims --strict`. A commit cannot contain its own hash, so the next one adds it.
 
 use super::condition::{Conditions, known_columns};
+use super::places::{Part, place};
 use super::plain_rows::PlainRows;
-use super::statistic::{OF_PLAIN_ROWS, Statistic};
+use super::statistic::{OF_PLAIN_ROWS, Statistic, fields_of, is_field_of_any};
+use super::time::{FORM, is_time};
 use super::verdict::{NAMES, Verdict};
 use crate::error::{Error, InputError, Result};
 use crate::experiment;
-use crate::input::{locate, parse, read_text};
+use crate::input::{parse, read_text};
 use crate::lab::Lab;
 use serde::Deserialize;
 use std::collections::BTreeSet;
@@ -79,7 +81,42 @@ pub struct Report {
     pub(super) tables: Vec<PlainRows>,
     #[serde(rename = "claim")]
     pub claims: Vec<Claim>,
+    #[serde(skip)]
+    origin: Origin,
 }
+
+/// Where a ledger came from, for errors about it.
+#[derive(Debug, Default)]
+struct Origin {
+    file: String,
+    text: String,
+    /// Whether a user wrote it.
+    is_own: bool,
+}
+
+/// The fields of a claim beside those of its statistic.
+const FIELDS: [&str; 20] = [
+    "id",
+    "quote",
+    "place",
+    "reported",
+    "claim",
+    "expected",
+    "frozen",
+    "changed",
+    "reason",
+    "note",
+    "context",
+    "not-comparable",
+    "missing",
+    "statistic",
+    "within",
+    "at-least",
+    "at-most",
+    "level",
+    "comparable-if",
+    "a-fortiori",
+];
 
 /// A claim as it is written; `Claim::test` says how it is judged.
 #[derive(Debug, Deserialize)]
@@ -158,8 +195,8 @@ impl Claim {
         self.expected.split(" or ")
     }
 
-    /// The time at which the claim was fixed, as `2026-01-31T12:00:00Z`.
-    pub(super) fn frozen_utc(&self) -> &str {
+    /// The time at which the claim was fixed, as `2026-01-31T12:00:00Z`; empty for a finding.
+    pub fn frozen_utc(&self) -> &str {
         self.frozen.split(' ').next().unwrap_or_default()
     }
 
@@ -185,15 +222,61 @@ impl Claim {
         self.within.is_some() || self.at_least.is_some() || self.at_most.is_some()
     }
 
+    /// Refuses a field that neither claims nor the claim's statistic have.
+    fn check_fields(&self) -> Result<()> {
+        let (own, of) = match self.statistic.as_deref() {
+            None => (Vec::new(), "a claim without a statistic".to_string()),
+            Some(name) => match fields_of(name) {
+                Some(own) => (own, format!("a claim with the statistic {name}")),
+                // `Statistic::of` names those that there are.
+                None => return Ok(()),
+            },
+        };
+        let of_no_statistic = self.fields.keys().find(|field| !is_field_of_any(field));
+        let Some(field) = of_no_statistic.or_else(|| self.fields.keys().find(|field| !own.contains(&field.as_str())))
+        else {
+            return Ok(());
+        };
+        let known: Vec<&str> = FIELDS.into_iter().chain(own).collect();
+        Err(InputError::new("field", field, format!("{of} has no such field")).allowed(known.join(", ")).into())
+    }
+
+    /// Refuses ends of a prediction that no number can be compared with.
+    fn check_prediction(&self) -> Result<()> {
+        let sides = [("at-least", self.at_least), ("at-most", self.at_most)];
+        let sides = sides.into_iter().filter_map(|(field, end)| Some((field, end?)));
+        let mut ends = self.within.into_iter().flatten().map(|end| ("within", end)).chain(sides);
+        if let Some((field, end)) = ends.find(|(_, end)| !end.is_finite()) {
+            return Err(InputError::new(field, end.to_string(), "is no end of a prediction")
+                .allowed("a finite number; at-least and at-most leave the other side open")
+                .into());
+        }
+        match self.within {
+            Some([low, high]) if low > high => {
+                let value = format!("[{low}, {high}]");
+                Err(InputError::new("within", value, "ends below its beginning").allowed("[low, high]").into())
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Checks the claim, and reads its statistic; `tables` are the ledger's.
     fn resolve(&mut self, tables: &[PlainRows]) -> Result<()> {
+        if self.id == 0 {
+            return Err(InputError::new("id", "0", "is no number of a claim").allowed("1 to 4294967295").into());
+        }
+        self.check_fields()?;
+        self.check_prediction()?;
+        if self.claim.trim().is_empty() {
+            return Err(InputError::new("claim", "", "is empty").allowed("the sentence that is tested").into());
+        }
         let is_finding = self.statistic.is_some() && !self.predicts() && self.frozen.is_empty();
         if let Some(field) = self.missing_field().filter(|_| !is_finding) {
             return Err(InputError::new("id", self.id.to_string(), format!("has no `{field}`")).into());
         }
         if !is_finding && !is_time(self.frozen_utc()) {
             return Err(InputError::new("frozen", &self.frozen, "does not begin with a time")
-                .allowed("a time in UTC and perhaps a commit, for example 2026-01-31T12:00:00Z 0123abcd")
+                .allowed(format!("{FORM}, and perhaps a commit after it, such as 0123abcd"))
                 .into());
         }
         let without = [&self.context, &self.not_comparable, &self.missing];
@@ -207,15 +290,11 @@ impl Claim {
             let problem = "is neither the name of a verdict nor names with ` or ` between them";
             return Err(InputError::new("expected", &self.expected, problem).allowed(NAMES.join(", ")).into());
         }
-        let Some(name) = &self.statistic else {
-            let unknown =
-                |field: &String| InputError::new(field, "", "is no field of a claim without a statistic").into();
-            return self.fields.keys().next().map_or(Ok(()), |field| Err(unknown(field)));
-        };
+        let Some(name) = &self.statistic else { return Ok(()) };
         let statistic = Statistic::of(name, &self.fields)?;
         check_columns(&statistic, &self.comparable_if, tables)?;
         let predicted = match (self.within, self.at_least, self.at_most) {
-            (Some([low, high]), None, None) if low <= high => Some([low, high]),
+            (Some(ends), None, None) => Some(ends),
             (None, Some(low), None) => Some([low, f64::INFINITY]),
             (None, None, Some(high)) => Some([f64::NEG_INFINITY, high]),
             (None, None, None) if is_finding => None,
@@ -250,46 +329,79 @@ impl Report {
     /// Reads a report's claims from their text.
     pub fn from_text(file: &str, text: &str) -> Result<Self> {
         let mut report: Self = parse(text, file)?;
-        for table in &report.tables {
-            table.check().map_err(|error| match error {
-                Error::Input(error) => {
-                    let at = locate(text, &error.field, &error.value);
-                    error.in_file(file, at).into()
-                }
-                other => other,
-            })?;
+        report.origin = Origin { file: file.to_string(), text: text.to_string(), is_own: false };
+        report.check_head().map_err(|error| report.located(Part::Head, error))?;
+        for (index, table) in report.tables.iter().enumerate() {
+            let is_twice = report.tables[..index].iter().any(|other| other.name == table.name);
+            let twice = || Err(InputError::new("name", &table.name, "is the name of two tables").into());
+            let checked = if is_twice { twice() } else { table.check() };
+            checked.map_err(|error| report.located(Part::Table(index), error))?;
         }
-        for claim in &mut report.claims {
-            let id = claim.id;
-            claim.resolve(&report.tables).map_err(|error| match error {
-                Error::Input(error) => {
-                    let at = place(text, id, &error.field, &error.value);
-                    error.in_file(file, at).into()
-                }
-                other => other,
-            })?;
+        let mut claims = std::mem::take(&mut report.claims);
+        for (index, claim) in claims.iter_mut().enumerate() {
+            claim.resolve(&report.tables).map_err(|error| report.located(Part::Claim(index), error))?;
         }
+        report.claims = claims;
         Ok(report)
+    }
+
+    fn check_head(&self) -> Result<()> {
+        for (field, value) in [("report", &self.report), ("title", &self.title)] {
+            if value.trim().is_empty() || value.contains(['\n', '\r']) {
+                return Err(InputError::new(field, value, "is not one line of text").allowed("a name").into());
+            }
+        }
+        if self.claims.is_empty() {
+            return Err(InputError::new("claim", "", "there is none").allowed("one [[claim]] or more").into());
+        }
+        Ok(())
+    }
+
+    /// An error with its place, unless it has one.
+    pub(super) fn located(&self, part: Part, error: Error) -> Error {
+        match error {
+            Error::Input(error) if error.place.is_none() => {
+                let Origin { file, text, .. } = &self.origin;
+                // The fault is the name of the field.
+                let (field, value) =
+                    if error.field == "field" { (&error.value, "") } else { (&error.field, &*error.value) };
+                let at = place(text, part, field, value);
+                error.in_file(file, at).into()
+            }
+            other => other,
+        }
+    }
+
+    /// Whether a user wrote the ledger, so that an unanswered claim may be a typing error.
+    pub(super) fn is_own(&self) -> bool {
+        self.origin.is_own
     }
 
     /// Reads a ledger of somebody's own, or all of a folder in the order of their names. Numbers of claims and letters of
     /// reports must be unique.
     pub fn read(path: &Path) -> Result<Vec<Self>> {
         let files = Self::files(path)?;
-        let of_file = |file: &PathBuf| Self::from_text(&file.display().to_string(), &read_text(file)?);
-        let ledgers = files.iter().map(of_file).collect::<Result<Vec<_>>>()?;
+        let of_file = |file: &PathBuf| {
+            let mut ledger = Self::from_text(&file.display().to_string(), &read_text(file)?)?;
+            ledger.origin.is_own = true;
+            Ok(ledger)
+        };
+        Self::unique(files.iter().map(of_file).collect::<Result<_>>()?)
+    }
+
+    fn unique(ledgers: Vec<Self>) -> Result<Vec<Self>> {
         let mut letters = BTreeSet::new();
         let mut numbers = BTreeSet::new();
-        for (file, ledger) in files.iter().zip(&ledgers) {
-            let twice = |field: &str, value: String| {
+        for ledger in &ledgers {
+            let twice = |part: Part, field: &str, value: String| {
                 let problem = "occurs twice; numbers of claims and names of reports are unique over all ledgers";
-                Err(InputError::new(field, value, problem).in_file(file.display().to_string(), None).into())
+                Err(ledger.located(part, InputError::new(field, value, problem).into()))
             };
             if !letters.insert(&ledger.report) {
-                return twice("report", ledger.report.clone());
+                return twice(Part::Head, "report", ledger.report.clone());
             }
-            if let Some(claim) = ledger.claims.iter().find(|claim| !numbers.insert(claim.id)) {
-                return twice("id", claim.id.to_string());
+            if let Some(index) = ledger.claims.iter().position(|claim| !numbers.insert(claim.id)) {
+                return twice(Part::Claim(index), "id", ledger.claims[index].id.to_string());
             }
         }
         Ok(ledgers)
@@ -305,10 +417,11 @@ impl Report {
         Ok(files)
     }
 
-    /// The ledgers that a program added to its lab, or else the four reports.
+    /// The ledgers that a program added to its lab, or else the four reports. Their numbers and letters must be unique.
     pub fn all(lab: &Lab) -> Result<Vec<Self>> {
         let texts = Self::texts(lab).iter();
-        texts.map(|(name, text)| Self::from_text(&format!("claims/{name}.toml"), text)).collect()
+        let ledgers = texts.map(|(name, text)| Self::from_text(&format!("claims/{name}.toml"), text));
+        Self::unique(ledgers.collect::<Result<_>>()?)
     }
 
     /// The names and texts of these ledgers.
@@ -346,14 +459,16 @@ fn check_columns(statistic: &Statistic, comparable_if: &Conditions, tables: &[Pl
     let known = table.map_or_else(known_columns, |table| table.columns().map(str::to_string).collect());
     let own = statistic.columns().into_iter();
     let mut all = own.chain(comparable_if.columns().map(|column| ("comparable-if", column)));
-    match all.find(|(_, column)| !known.iter().any(|own| own == column)) {
-        None => Ok(()),
-        Some((field, column)) => {
-            let rows = table.map_or_else(|| "records.csv".to_string(), |table| format!("the table {}", table.name));
-            let problem = format!("there is no such column in {rows}");
-            Err(InputError::new(field, column, problem).allowed(known.join(", ")).into())
-        }
+    let Some((field, column)) = all.find(|(_, column)| !known.iter().any(|own| own == column)) else { return Ok(()) };
+    // The name of the table is wrong if another table has the column.
+    let others: Vec<&str> = tables.iter().map(|table| table.name.as_str()).collect();
+    if table.is_none() && tables.iter().any(|table| table.columns().any(|own| own == column)) {
+        let problem = format!("is no table of this ledger, and rows of an experiment have no column {column}");
+        return Err(InputError::new("experiment", experiment, problem).allowed(others.join(", ")).into());
     }
+    let rows = table.map_or_else(|| "records.csv".to_string(), |table| format!("the table {}", table.name));
+    let problem = format!("there is no such column in {rows}");
+    Err(InputError::new(field, column, problem).allowed(known.join(", ")).into())
 }
 
 /// The ledgers of a folder, by name.
@@ -370,22 +485,24 @@ fn ledgers_in(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Whether a text is a time such as `2026-01-31T12:00:00Z`: such texts are in the order of their times.
-fn is_time(text: &str) -> bool {
-    const FORM: &[u8] = b"0000-00-00T00:00:00Z";
-    let fits = |(own, form): (u8, &u8)| if *form == b'0' { own.is_ascii_digit() } else { own == *form };
-    text.len() == FORM.len() && text.bytes().zip(FORM).all(fits)
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Line and column of a field's value in the claim with this number.
-fn place(text: &str, id: u32, field: &str, value: &str) -> Option<(usize, usize)> {
-    const HEAD: &str = "[[claim]]";
-    let own = format!("id = {id}\n");
-    let (start, part) = text.match_indices(HEAD).map(|(at, _)| at).find_map(|at| {
-        let rest = &text[at + HEAD.len()..];
-        let part = &rest[..rest.find(HEAD).unwrap_or(rest.len())];
-        part.contains(&own).then_some((at + HEAD.len(), part))
-    })?;
-    let (line, column) = locate(part, field, value).or_else(|| locate(part, "id", &id.to_string()))?;
-    Some((line + text[..start].matches('\n').count(), column))
+    /// The list has the fields that a claim reads, and only those.
+    #[test]
+    fn the_list_of_fields_is_that_of_claims() {
+        for field in FIELDS {
+            let values = ["1", "\"a\"", "true", "[1, 2]", "{}"].map(|value| format!("{field} = {value}\n"));
+            let of_claim = |own: &String| {
+                let needed =
+                    ["id = 1\n", "claim = \"c\"\n"].into_iter().filter(|line| !line.starts_with(&format!("{field} =")));
+                let claim = toml::from_str::<Claim>(&format!("{}{own}", needed.collect::<String>()));
+                claim.is_ok_and(|claim| claim.fields.is_empty())
+            };
+            assert!(values.iter().any(of_claim), "{field}");
+        }
+        let fields = toml::from_str::<Claim>("id = 1\nclaim = \"c\"\nat_least = 1\n").unwrap().fields;
+        assert_eq!(fields.len(), 1);
+    }
 }

@@ -3,13 +3,17 @@
 //! Each folder is a run. Rows of all runs at the report's own size are measured together, and each run alone: a verdict stands only if
 //! every run alone has it, too. A run of one or two units is not judged alone. Folders are read in the order of their paths, so the order in which they are named changes nothing.
 
+use super::absent::{check_values, lacking_file, why};
 use super::condition::{Columns, Conditions};
 use super::definition::{Claim, Report, Test};
 use super::measure::{Evidence, Item, Query, measure};
 use super::measurement::Measurement;
+use super::places::Part as Place;
 use super::statistic::{Cases, GuardColumn, GuardValue, Statistic};
+use super::time::is_time;
 use super::verdict::Verdict;
 use crate::cases_file::{self, CaseRow};
+use crate::error::InputError;
 use crate::experiment::{MACHINE, has_records, read_run_file, records_path};
 use crate::guard_prices::{self, PriceRow, read_prices};
 use crate::lab::Lab;
@@ -32,6 +36,8 @@ pub struct Answer<'a> {
     /// How many more units would settle an open claim; if runs differ, in each run.
     pub(super) to_settle: Option<usize>,
     pub(super) age: Age,
+    /// The table whose file no folder has.
+    pub(super) lacks: Option<InputError>,
 }
 
 /// Whether the claim was fixed before its rows were measured.
@@ -55,6 +61,15 @@ impl Answer<'_> {
     /// Whether rows judge the claim that are not known to be younger than its bound.
     pub fn is_bound_younger(&self) -> bool {
         self.is_judged() && self.found.is_some() && self.age != Age::BoundFirst
+    }
+
+    /// Whether no rows answer a claim of a user's ledger, although a verdict was expected.
+    pub fn is_unanswered(&self) -> bool {
+        self.report.is_own() && self.verdict == Verdict::NotAnswered && !self.may_be_unanswered()
+    }
+
+    pub(super) fn may_be_unanswered(&self) -> bool {
+        self.claim.expected_verdicts().any(|name| name == Verdict::NotAnswered.name())
     }
 
     pub(super) fn is_judged(&self) -> bool {
@@ -91,12 +106,13 @@ pub fn judge<'a>(lab: &Arc<Lab>, reports: &'a [Report], folders: &[PathBuf]) -> 
     let own_path = |folder: &PathBuf| folder.canonicalize().unwrap_or_else(|_| folder.clone());
     let folders: BTreeMap<PathBuf, &PathBuf> = folders.iter().map(|folder| (own_path(folder), folder)).collect();
     let mut libraries = folders.values().map(|out| Library::open(lab, out)).collect::<Result<Vec<_>>>()?;
-    let claims = reports.iter().flat_map(|report| report.claims.iter().map(move |claim| (report, claim)));
+    let claims = reports.iter().flat_map(|report| report.claims.iter().enumerate().map(move |own| (report, own)));
     let mut answers = Vec::new();
-    for (report, claim) in claims {
+    for (report, (index, claim)) in claims {
         let without = |verdict, why: &str| {
             let (why, sources, runs) = (why.to_string(), Vec::new(), Vec::new());
-            Answer { report, claim, verdict, why, sources, found: None, runs, to_settle: None, age: Age::Unknown }
+            let (found, to_settle, age, lacks) = (None, None, Age::Unknown, None);
+            Answer { report, claim, verdict, why, sources, found, runs, to_settle, age, lacks }
         };
         let test = match claim.test() {
             Err((verdict, why)) => {
@@ -110,12 +126,16 @@ pub fn judge<'a>(lab: &Arc<Lab>, reports: &'a [Report], folders: &[PathBuf]) -> 
                 library.load(report, experiment)?;
             }
         }
+        let evidence: Vec<&Evidence> = libraries.iter().filter_map(|library| library.evidence(report, test)).collect();
+        check_values(report, index, &test.statistic, &evidence)?;
         let parts = libraries
             .iter()
             .filter_map(|library| library.part(report, test).transpose())
             .collect::<Result<Vec<_>>>()?;
         if parts.is_empty() {
-            answers.push(without(Verdict::NotAnswered, "The results have no such rows."));
+            let lacks = lacking_file(report, &test.statistic, &evidence);
+            let why = why(report, &test.statistic, &evidence);
+            answers.push(Answer { lacks, ..without(Verdict::NotAnswered, &why) });
             continue;
         }
         let is_comparable = parts.iter().any(|part| part.differences.is_empty());
@@ -203,8 +223,10 @@ impl<'a> Library<'a> {
         if self.experiments.contains_key(&key) {
             return Ok(());
         }
-        let evidence = if let Some(table) = report.table(name) {
-            table.read(self.out)?.map(|rows| Evidence::of_table(rows, &table.settings))
+        let table = report.tables.iter().enumerate().find(|(_, table)| table.name == name);
+        let evidence = if let Some((index, table)) = table {
+            let rows = table.read(self.out).map_err(|error| report.located(Place::Table(index), error))?;
+            rows.map(|rows| Evidence::of_table(rows, &table.settings))
         } else {
             let folder = self.out.join(name);
             let has_rows = has_records(&folder);
@@ -212,6 +234,12 @@ impl<'a> Library<'a> {
         };
         self.experiments.insert(key, evidence);
         Ok(())
+    }
+
+    /// The rows of the experiment or table that a test asks for.
+    fn evidence(&self, report: &Report, test: &Test) -> Option<&Evidence> {
+        let Statistic::OfRows { experiment, .. } = &test.statistic else { return None };
+        self.experiments.get(&key(report, experiment))?.as_ref()
     }
 
     /// The part that answers a claim; `None` if there is none.
@@ -228,8 +256,7 @@ impl<'a> Library<'a> {
         };
         match &test.statistic {
             Statistic::OfRows { experiment, rows, .. } => {
-                let evidence = self.experiments.get(&key(report, experiment)).and_then(Option::as_ref);
-                let Some(evidence) = evidence else { return Ok(None) };
+                let Some(evidence) = self.evidence(report, test) else { return Ok(None) };
                 let of_table = report.table(experiment).map(|table| table.path(self.out));
                 let source = of_table.unwrap_or_else(|| records_path(&self.out.join(experiment)));
                 part_of_rows(evidence, source, rows, test)
@@ -275,7 +302,7 @@ fn part_of_rows<'a>(
         let own: Vec<_> = evidence.rows(rows).filter(|item| query.admits(item.columns)).collect();
         let columns: Vec<&Columns> = own.iter().map(|item| item.columns).collect();
         let started: Vec<&str> = own.iter().map(Item::started_utc).collect();
-        let first = started.iter().min().filter(|first| !first.is_empty());
+        let first = started.iter().min().filter(|_| started.iter().all(|own| is_time(own)));
         return Ok(Some(Part {
             source,
             alone,
@@ -295,7 +322,7 @@ fn key(report: &Report, name: &str) -> (String, String) {
 
 /// The time at which the measurement of a folder began, if its file tells it.
 fn started(folder: &Path) -> Option<String> {
-    Some(read_run_file(&folder.join(MACHINE)).ok()?.started_utc).filter(|started| !started.is_empty())
+    Some(read_run_file(&folder.join(MACHINE)).ok()?.started_utc).filter(|started| is_time(started))
 }
 
 /// The differences between the rows' conditions and the required ones, each once; if the size differs, also the ratio

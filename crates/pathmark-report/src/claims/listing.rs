@@ -1,8 +1,10 @@
 //! Lists of verdicts: files, which a run with fewer rows must not replace, and a section of the page.
 
 use super::definition::Report;
+use super::escape::{cell, escaped, one_line, quotation};
 use super::judge::{Age, Answer};
 use super::verdict::{NAMES, Verdict};
+use crate::analysis::Interval;
 use crate::atomic_file;
 use crate::block::Block;
 use crate::error::{Error, InputError, Result};
@@ -14,8 +16,6 @@ use crate::table::Table;
 use crate::words::capital;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
-use std::fs::File;
-use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 
 /// Name of the verdicts' folder within the results.
@@ -24,6 +24,13 @@ pub const FOLDER: &str = "claims";
 pub const MARKDOWN: &str = "CLAIMS.md";
 
 const HEADING: &str = "# The claims of the four reports";
+/// The first sentences below the heading, of verdicts and of numbers: with the heading they tell the program's own texts.
+const OF_VERDICTS: &str = "`pathmark claims` computed every verdict from the rows that it links to.";
+const OF_NUMBERS: &str = "`pathmark claims` computed every number from the rows that it links to.";
+/// The beginning of the line above the claims of a report.
+const REPORT: &str = "## Report ";
+/// The beginning of a table of verdicts.
+const COLUMNS: &str = "claim,report,verdict,expected,says,";
 
 impl Answer<'_> {
     /// The measured value with its interval.
@@ -97,8 +104,14 @@ impl Answer<'_> {
         Some(sources.join("; ")).filter(|sources| !sources.is_empty())
     }
 
-    fn level(&self) -> Option<f64> {
-        Some(self.found?.interval?.level)
+    /// The measured value as a number.
+    pub fn value(&self) -> Option<f64> {
+        Some(self.found?.value)
+    }
+
+    /// The ends of its interval, and their confidence.
+    pub fn interval(&self) -> Option<Interval> {
+        self.found?.interval
     }
 }
 
@@ -119,7 +132,7 @@ impl Listing {
         let name = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
         let stem = name.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
         let heading = match ledgers {
-            [one] => format!("# {}", one.title),
+            [one] => format!("# {}", one.title.trim()),
             _ => format!("# The claims of {stem}"),
         };
         Self { stem, heading }
@@ -138,10 +151,21 @@ impl Listing {
         out.join(format!("{}.md", self.stem.to_uppercase()))
     }
 
-    /// Enters the files into those of a command that will write them; a new file may replace an old one.
-    pub fn enter(&self, option: &str, out: &Path, files: &mut Files) -> Result<()> {
-        files.renews(option, &self.csv(out), |path| starts_with(path, "claim,report,verdict,"))?;
-        files.renews(option, &self.markdown(out), |path| starts_with(path, &self.heading))
+    /// Enters the files into those of a command that will write them. A new file may replace an old one of the same
+    /// reports.
+    pub fn enter(&self, option: &str, out: &Path, files: &mut Files, reports: &[Report]) -> Result<()> {
+        let [table, text] = [self.csv(out), self.markdown(out)];
+        files.renews(option, &table, |path| text_of(path).starts_with(COLUMNS))?;
+        files.renews(option, &text, |path| is_listing(path, &self.heading))?;
+        let is_own = |name: &String| reports.iter().any(|report| report.report == *name);
+        for (path, names) in [(&table, reports_in_table(&table)), (&text, reports_in_text(&text, reports))] {
+            if let Some(other) = names.into_iter().find(|name| !is_own(name)) {
+                let problem = format!("has verdicts on the report {other}, which this ledger does not have");
+                let error = InputError::new(option, path.display().to_string(), problem);
+                return Err(error.allowed("another folder, or another name of the ledger").into());
+            }
+        }
+        Ok(())
     }
 
     /// Writes the files into a folder of results.
@@ -187,7 +211,7 @@ fn in_table(path: &Path) -> Kept {
 
 /// The verdicts in a text; none if there is no such file.
 fn in_text(path: &Path) -> Kept {
-    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let text = text_of(path);
     let entries = text.split("\n### ").skip(1);
     let of_entry = |entry: &str| {
         let (id, rest) = entry.split_once(". ")?;
@@ -195,6 +219,22 @@ fn in_text(path: &Path) -> Kept {
         verdict(id, &rest.split_once("**")?.0.to_lowercase().replace(' ', "-"))
     };
     entries.filter_map(of_entry).collect()
+}
+
+/// The names of the reports in a table; none if there is no such file.
+fn reports_in_table(path: &Path) -> BTreeSet<String> {
+    let Ok(reader) = csv::Reader::from_path(path) else { return BTreeSet::new() };
+    let rows = reader.into_records().filter_map(std::result::Result::ok);
+    rows.filter_map(|row| row.get(1).map(str::to_string)).collect()
+}
+
+/// The names of the reports in a text, as far as they are not those of `own`; none if there is no such file.
+fn reports_in_text(path: &Path, own: &[Report]) -> BTreeSet<String> {
+    let heads: Vec<String> = own.iter().map(|report| format!("{}: ", report.report)).collect();
+    let text = text_of(path);
+    let named = text.lines().filter_map(|line| line.strip_prefix(REPORT));
+    let others = named.filter(|named| !heads.iter().any(|head| named.starts_with(head)));
+    others.filter_map(|named| Some(named.split_once(": ")?.0.to_string())).collect()
 }
 
 /// A claim's number with its verdict, if both can be read.
@@ -216,10 +256,10 @@ fn table(stem: &'static str, answers: &[Answer<'_>]) -> Block {
         .column("reported", |a| a.claim.reported.clone())
         .column("statistic", |a| a.question())
         .column("predicted", |a| a.predicted())
-        .column("measured", |a| number(of(a).map(|found| found.value)))
-        .column("low", |a| number(of(a).and_then(|found| Some(found.interval?.low))))
-        .column("high", |a| number(of(a).and_then(|found| Some(found.interval?.high))))
-        .column("level", |a| number(a.level()))
+        .column("measured", |a| number(a.value()))
+        .column("low", |a| number(a.interval().map(|interval| interval.low)))
+        .column("high", |a| number(a.interval().map(|interval| interval.high)))
+        .column("level", |a| number(a.interval().map(|interval| interval.level)))
         .column("values", |a| number(of(a).map(|found| found.units as f64)))
         .column("source", |a| a.source().unwrap_or_default())
         .column("why", |a| a.why.clone())
@@ -234,12 +274,19 @@ fn table(stem: &'static str, answers: &[Answer<'_>]) -> Block {
 
 /// Whether a file is such a text, which a new one may replace.
 pub fn is_markdown(path: &Path) -> bool {
-    starts_with(path, HEADING)
+    is_listing(path, HEADING)
 }
 
-fn starts_with(path: &Path, text: &str) -> bool {
-    let mut head = vec![0; text.len()];
-    File::open(path).and_then(|mut file| file.read_exact(&mut head)).is_ok() && head == text.as_bytes()
+/// Whether a file begins with this heading and the program's sentence below it. Anybody's text may begin with the heading.
+fn is_listing(path: &Path, heading: &str) -> bool {
+    let text = text_of(path);
+    let below = text.strip_prefix(heading).and_then(|rest| rest.strip_prefix("\n\n")).unwrap_or_default();
+    below.starts_with(OF_VERDICTS) || below.starts_with(OF_NUMBERS)
+}
+
+/// The text of a file; empty if it has none.
+fn text_of(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_default()
 }
 
 /// The verdicts on claims with a prediction.
@@ -272,8 +319,9 @@ fn markdown(heading: &str, answers: &[Answer<'_>], base: &Path) -> String {
     let (findings, claims): (Vec<&Answer<'_>>, Vec<&Answer<'_>>) = answers.iter().partition(is_finding);
     let mut text = format!("{heading}\n");
     if !claims.is_empty() {
-        text.push_str(
-            "\n`pathmark claims` computed every verdict from the rows that it links to. A claim is *confirmed* if the whole interval lies within the values \
+        let _ = write!(
+            text,
+            "\n{OF_VERDICTS} A claim is *confirmed* if the whole interval lies within the values \
              that the report predicts, *refuted* if it lies wholly outside, and *open* otherwise. Each folder is a run; a claim whose runs differ is open. It is *not comparable* if the rows \
              were measured under other conditions, and *not answered* if there are no rows.\n\n",
         );
@@ -282,7 +330,7 @@ fn markdown(heading: &str, answers: &[Answer<'_>], base: &Path) -> String {
         let _ = writeln!(text, "|--|{}", "--:|".repeat(names.len()));
         for (report, counts) in counts(answers) {
             let counts: Vec<String> = counts.iter().map(ToString::to_string).collect();
-            let _ = writeln!(text, "| {report} | {} |", counts.join(" | "));
+            let _ = writeln!(text, "| {} | {} |", cell(&report), counts.join(" | "));
         }
     }
     let mut last: Option<&Report> = None;
@@ -291,7 +339,7 @@ fn markdown(heading: &str, answers: &[Answer<'_>], base: &Path) -> String {
     for answer in ordered {
         if last.is_none_or(|last| last.report != answer.report.report) {
             let Report { report, title, about, source, doi, .. } = answer.report;
-            let _ = write!(text, "\n## Report {report}: {title}\n\n{}\n", about.trim());
+            let _ = write!(text, "\n{REPORT}{report}: {title}\n\n{}\n", about.trim());
             let doi = Some(doi).filter(|doi| !doi.is_empty()).map(|doi| format!("<https://doi.org/{doi}>"));
             let cited = joined([source.clone(), doi.unwrap_or_default()]);
             if !cited.is_empty() {
@@ -302,6 +350,9 @@ fn markdown(heading: &str, answers: &[Answer<'_>], base: &Path) -> String {
         text.push_str(&entry(answer, base));
     }
     if let Some(first) = findings.first() {
+        if last.is_none() {
+            let _ = write!(text, "\n{OF_NUMBERS}\n");
+        }
         let _ = write!(
             text,
             "\n{}\n\n| finding | measured | interval | rows |\n|--|--|--|--|\n",
@@ -310,9 +361,9 @@ fn markdown(heading: &str, answers: &[Answer<'_>], base: &Path) -> String {
         for answer in findings {
             let numbers = match &answer.found {
                 Some(found) => format!("{} | {}; {}", found.shown(), found.confidence(), found.rule_in_words()),
-                None => format!("- | {}", answer.why),
+                None => format!("- | {}", cell(&answer.why)),
             };
-            let _ = writeln!(text, "| {} | {numbers} | {} |", answer.claim.claim, links(answer, base));
+            let _ = writeln!(text, "| {} | {numbers} | {} |", cell(&answer.claim.claim), links(answer, base));
         }
     }
     text
@@ -326,30 +377,32 @@ fn links(answer: &Answer<'_>, base: &Path) -> String {
 
 fn entry(answer: &Answer<'_>, base: &Path) -> String {
     let claim = answer.claim;
-    let mut text = format!("\n### {}. {}\n\n**{}**", claim.id, claim.claim, capital(&answer.verdict.to_string()));
+    let says = one_line(&claim.claim);
+    let mut text = format!("\n### {}. {says}\n\n**{}**", claim.id, capital(&answer.verdict.to_string()));
     for part in [answer.in_runs(), answer.settled_by()].iter().filter(|part| !part.is_empty()) {
         let _ = write!(text, ", {part}");
     }
     if !answer.why.is_empty() {
-        let _ = write!(text, ": {}", answer.why);
+        let _ = write!(text, ": {}", one_line(&answer.why));
     }
-    let _ = write!(text, "\n\n> {} ({})\n\n- Reported: {}\n", claim.quote, claim.place, claim.reported);
+    let [place, reported] = [&claim.place, &claim.reported].map(|words| escaped(&one_line(words)));
+    let _ = write!(text, "\n\n{} ({place})\n\n- Reported: {reported}\n", quotation(&claim.quote));
     if let Some(found) = &answer.found {
         let links = links(answer, base);
         let level = Some(found.confidence()).filter(|level| !level.is_empty());
         let level = level.map_or_else(String::new, |level| format!(", {level}"));
         let (measured, rule, question) = (found.shown(), found.rule_in_words(), answer.question());
         let _ = writeln!(text, "- Measured: {measured}{level}; {question}; {rule}; {links}");
-        let reason = Some(claim.reason.trim()).filter(|reason| !reason.is_empty());
+        let reason = Some(one_line(&claim.reason)).filter(|reason| !reason.is_empty());
         let reason = reason.map_or_else(String::new, |reason| format!(". {reason}"));
         let _ = writeln!(text, "- Predicted: {}{reason}", answer.predicted());
         let _ = writeln!(text, "- Fixed at {}: {}", claim.fixed(), answer.age());
     }
     if !claim.changed.is_empty() {
-        let _ = writeln!(text, "- Changed: {}", claim.changed.trim());
+        let _ = writeln!(text, "- Changed: {}", one_line(&claim.changed));
     }
     if !claim.note.is_empty() {
-        let _ = writeln!(text, "- {}", claim.note.trim());
+        let _ = writeln!(text, "- {}", one_line(&claim.note));
     }
     text
 }

@@ -100,6 +100,11 @@ impl Evidence {
         rows.zip(&self.columns).map(move |(row, columns)| Item { run, row, columns })
     }
 
+    /// The columns of all rows.
+    pub(super) fn columns(&self) -> &[Columns] {
+        &self.columns
+    }
+
     /// The rows that meet some conditions.
     pub(super) fn rows<'a>(&'a self, conditions: &'a Conditions) -> impl Iterator<Item = Item<'a>> {
         self.items(0).filter(|item| conditions.admit(item.columns))

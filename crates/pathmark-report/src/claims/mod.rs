@@ -3,23 +3,30 @@
 //! A claim names the rows that answer it, a statistic, and the values that the report predicts for it (see `definition.rs`). To add one, add
 //! it to `experiments/claims/REPORT.toml`.
 
+mod absent;
 mod agreement;
 mod condition;
 mod definition;
+mod escape;
 mod judge;
+#[cfg(test)]
+mod ledger_tests;
 mod listing;
 mod measure;
 mod measurement;
+mod places;
 mod plain_rows;
 #[cfg(test)]
 mod plain_rows_tests;
 mod statistic;
 #[cfg(test)]
 mod tests;
+mod time;
 #[cfg(test)]
 mod unit_tests;
 mod verdict;
 
+pub use absent::check_files;
 pub use agreement::Agreement;
 pub use definition::{Claim, Needs, Report};
 pub use judge::{Answer, judge};

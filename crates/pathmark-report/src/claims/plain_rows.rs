@@ -10,10 +10,11 @@
 //! pair = "round"                      # the column that counts pairs within a repetition [default: pair, if it is there]
 //! ```
 //!
-//! Two more columns are read if the file has them, with the meaning that they have in `records.csv`: `seed` and
-//! `started_utc`. Other columns are ignored.
+//! Two more columns are read if the file has them, with the meaning that they have in `records.csv`: `seed`, a whole
+//! number, and `started_utc`, a time such as 2026-01-31T12:00:00Z. Both may be empty. Other columns are ignored.
 
 use super::condition::Columns;
+use super::time::{FORM, is_time};
 use crate::error::{Error, InputError, Result};
 use crate::measure::{Record, ScheduleKey};
 use crate::rows::Row;
@@ -22,10 +23,12 @@ use csv::StringRecord;
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// Field, value and problem.
-struct Wrong(String, String, &'static str);
+/// Field, value, problem, and the allowed values.
+struct Wrong(String, String, &'static str, &'static str);
 
 /// A table of rows, as a ledger describes it.
 #[derive(Debug, Deserialize)]
@@ -88,10 +91,7 @@ impl PlainRows {
     /// The rows with their columns; `None` if the folder has no such file.
     pub(super) fn read(&self, folder: &Path) -> Result<Option<(Vec<Row>, Vec<Columns>)>> {
         let path = self.path(folder);
-        if !path.is_file() {
-            return Ok(None);
-        }
-        let file = std::fs::File::open(&path).map_err(|e| Error::system("reading", &path, e))?;
+        let Some(file) = opened(&path)? else { return Ok(None) };
         let mut reader = csv::Reader::from_reader(file);
         let refused = |field: &str, value: &str, problem: &str, line: usize| {
             InputError::new(field, value, problem).in_file(path.display().to_string(), Some((line, 1)))
@@ -109,9 +109,9 @@ impl PlainRows {
         for row in reader.into_records() {
             let row = row.map_err(|e| unreadable(&e))?;
             let line = row.position().map_or(1, |position| position.line() as usize);
-            let (record, columns) = self
-                .row(&heads, &row)
-                .map_err(|Wrong(field, value, problem)| refused(&field, &value, problem, line))?;
+            let (record, columns) = self.row(&heads, &row).map_err(|Wrong(field, value, problem, allowed)| {
+                refused(&field, &value, problem, line).allowed(allowed)
+            })?;
             if !seen.insert((record.cell.clone(), record.repetition, record.pair)) {
                 let problem =
                     "occurs twice with one repetition; name the column that tells both rows apart in `settings`";
@@ -128,11 +128,18 @@ impl PlainRows {
     fn row(&self, heads: &StringRecord, row: &StringRecord) -> std::result::Result<(Record, Columns), Wrong> {
         let field =
             |name: &str| heads.iter().position(|head| head == name).and_then(|at| row.get(at)).unwrap_or_default();
+        let wrong =
+            |name: &str, problem, allowed| Wrong(name.to_string(), field(name).trim().to_string(), problem, allowed);
         let whole = |name: &str| {
-            let text = field(name).trim();
-            text.parse::<u32>().map_err(|_| Wrong(name.to_string(), text.to_string(), "is not a whole number from 0"))
+            let number = field(name).trim().parse::<u32>();
+            number.map_err(|_| wrong(name, "is not a whole number in this range", "0 to 4294967295"))
         };
-        let optional = |name: &str| if field(name).is_empty() { Ok(None) } else { whole(name).map(Some) };
+        let seed = Some(field(SEED).trim()).filter(|text| !text.is_empty()).map(str::parse::<u64>).transpose();
+        let seed = seed.map_err(|_| wrong(SEED, "is not a whole number in this range", "0 to 18446744073709551615"))?;
+        let started = field(STARTED).trim();
+        if !started.is_empty() && !is_time(started) {
+            return Err(wrong(STARTED, "is not a time", FORM));
+        }
         let mut columns = Columns::new();
         for name in &self.settings {
             columns.insert(name.clone(), Value::from(field(name)));
@@ -142,17 +149,17 @@ impl PlainRows {
             let value = match text.parse::<f64>() {
                 _ if text.is_empty() => Value::Null,
                 Ok(value) if value.is_finite() => Value::from(value),
-                _ => return Err(Wrong(name.clone(), text.to_string(), "is not a finite number")),
+                _ => return Err(wrong(name, "is not a finite number", "such as 0.5 or 1e-6, or nothing")),
             };
             columns.insert(name.clone(), value);
         }
         let in_pairs = self.pair.as_deref().unwrap_or(PAIR);
-        let (repetition, pair, seed) = (whole(&self.repetition)?, optional(in_pairs)?, optional(SEED)?);
+        let repetition = whole(&self.repetition)?;
+        let pair = if field(in_pairs).trim().is_empty() { None } else { Some(whole(in_pairs)?) };
         columns.insert(self.repetition.clone(), Value::from(repetition));
-        for (name, value) in [(in_pairs, pair), (SEED, seed)] {
-            columns.insert(name.to_string(), value.map_or(Value::Null, Value::from));
-        }
-        columns.insert(STARTED.to_string(), Value::from(field(STARTED)));
+        columns.insert(in_pairs.to_string(), Value::from(pair));
+        columns.insert(SEED.to_string(), Value::from(seed));
+        columns.insert(STARTED.to_string(), Value::from(started));
         let own = self.settings.iter().map(|name| format!("{name}={}", field(name)));
         let cell: Vec<String> = own.chain(seed.map(|seed| format!("seed={seed}"))).collect();
         let cell = cell.join("/");
@@ -163,10 +170,34 @@ impl PlainRows {
             scene: columns.get("scene").and_then(Value::as_str).unwrap_or_default().to_string(),
             repetition,
             pair,
-            seed: u64::from(seed.unwrap_or(0)),
-            started_utc: field(STARTED).to_string(),
+            seed: seed.unwrap_or(0),
+            started_utc: started.to_string(),
             ..Record::default()
         };
         Ok((record, columns))
+    }
+}
+
+/// Opens a user's file of rows; `None` if there is none.
+fn opened(path: &Path) -> Result<Option<File>> {
+    let refused = |problem: &str| {
+        let error = InputError::new("file", path.display().to_string(), problem);
+        Err(error.allowed("the path of a CSV file within the folder of rows").into())
+    };
+    let system = |e| Error::system("reading", path, e);
+    match path.symlink_metadata() {
+        Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => return Ok(None),
+        Err(e) if matches!(e.kind(), ErrorKind::InvalidInput | ErrorKind::InvalidFilename) => {
+            return refused("cannot be the name of a file");
+        }
+        Err(e) => return Err(system(e)),
+        Ok(_) => {}
+    }
+    match path.metadata() {
+        Err(e) if e.kind() == ErrorKind::NotFound => refused("is a link to a file that is not there"),
+        Err(e) => Err(system(e)),
+        Ok(found) if found.is_dir() => refused("is a folder"),
+        Ok(found) if !found.is_file() => refused("is not a regular file"),
+        Ok(_) => File::open(path).map(Some).map_err(system),
     }
 }

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 /// A ledger on `sorts.csv`, with one claim.
-fn ledger(evidence: &str) -> String {
+pub(super) fn ledger(evidence: &str) -> String {
     format!(
         "report = \"S\"\ntitle = \"Sorting\"\nabout = \"Who.\"\nsource = \"A. Author, 2026\"\ndoi = \"10.1/2\"\n\
          [[table]]\nname = \"sorts\"\nfile = \"sorts.csv\"\nsettings = [\"program\", \"n\"]\nvalues = [\"seconds\"]\n\
@@ -16,7 +16,7 @@ fn ledger(evidence: &str) -> String {
 }
 
 /// `quick` takes n ns, `bubble` n² ns; repetitions differ by a per mille.
-fn sorts() -> String {
+pub(super) fn sorts() -> String {
     let mut text = "n,repetition,program,seconds,remark\n".to_string();
     for repetition in 0..7 {
         for n in [100.0, 1000.0, 10000.0] {
@@ -28,7 +28,7 @@ fn sorts() -> String {
     text
 }
 
-fn folder(rows: &str) -> tempfile::TempDir {
+pub(super) fn folder(rows: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("sorts.csv"), rows).unwrap();
     folder
@@ -75,6 +75,30 @@ fn rows_of_other_programs_judge_both_ways() {
     }
 }
 
+/// The rows with another column.
+fn with_column(name: &str, value: &str) -> String {
+    let rows = sorts();
+    let (head, rest) = rows.split_once('\n').unwrap();
+    format!("{name},{head}\n{}", rest.lines().map(|line| format!("{value},{line}\n")).collect::<String>())
+}
+
+/// A time tells whether a bound is older, a seed may be as large as a word, and both may be missing.
+#[test]
+fn seeds_and_times_are_read() {
+    let value = "statistic = \"value\"\ncolumn = \"seconds\"\nat-least = 0.0";
+    let is_younger = |rows: &str| {
+        let own = folder(rows);
+        let reports = [Report::from_text("s.toml", &ledger(value)).unwrap()];
+        judge(&Lab::built_in(), &reports, &[own.path().to_path_buf()]).unwrap()[0].is_bound_younger()
+    };
+    assert!(!is_younger(&with_column("started_utc", "2026-01-01T00:00:00Z")));
+    assert!(is_younger(&with_column("started_utc", "2025-12-31T23:59:59Z")));
+    assert!(is_younger(&with_column("started_utc", "")) && is_younger(&sorts()));
+    let last = u64::MAX.to_string();
+    assert!(judged(&with_column("seed", &last), &format!("{value}\nrows = {{ seed = [\"{last}\"] }}")).is_ok());
+    assert!(judged(&with_column("seed", ""), value).is_ok());
+}
+
 #[test]
 fn wrong_tables_and_queries_are_told_with_their_place() {
     let value = "statistic = \"value\"\ncolumn = \"seconds\"\nat-least = 0.0";
@@ -97,6 +121,11 @@ fn wrong_tables_and_queries_are_told_with_their_place() {
         (sorts().replacen("100,0,quick,", "100,-1,quick,", 1), ["sorts.csv:2", "repetition", "-1"]),
         (sorts().replacen("100,0,bubble", "100,0,quick", 1), ["sorts.csv:3", "n=100", "settings"]),
         (sorts().replacen("100,0,quick,", "100,0,", 1), ["sorts.csv:2", "cannot be read", "fields"]),
+        (with_column("seed", "-1"), ["sorts.csv:2", "seed = -1", "0 to 18446744073709551615"]),
+        (with_column("pair", "4294967296"), ["sorts.csv:2", "pair = 4294967296", "0 to 4294967295"]),
+        (with_column("started_utc", "zzz"), ["sorts.csv:2", "started_utc = zzz", "such as 2026-01-31T12:00:00Z"]),
+        (with_column("started_utc", "2026-11-28 05:00:00"), ["sorts.csv:2", "started_utc = 2026", "a time in UTC"]),
+        (with_column("started_utc", "9999-99-99T99:99:99Z"), ["sorts.csv:2", "started_utc = 9999", "a time in UTC"]),
     ] {
         let error = judged(&rows, value).unwrap_err();
         assert!(told.iter().all(|word| error.contains(word)), "{error}");

@@ -144,6 +144,37 @@ pub(super) const OF_PLAIN_ROWS: &str =
 /// The names of the statistics that are not of rows.
 const OTHERS: [&str; 2] = ["case", "guard"];
 
+/// The fields of the statistics of rows, whatever their kind.
+const OF_ROWS: [&str; 3] = ["experiment", "rows", "unit"];
+
+/// The statistics with their own fields; those of rows also have [`OF_ROWS`].
+const FIELDS: [(&str, &[&str]); 12] = [
+    ("value", &["column", "plus", "per"]),
+    ("count", &["column"]),
+    ("paired-ratio", &["column", "over"]),
+    ("speedup", &["over", "column"]),
+    ("exponent", &["x", "y"]),
+    ("rmse-slope", &[]),
+    ("mean-ratio", &["column", "over"]),
+    ("rank-correlation", &["x", "y", "by"]),
+    ("checksum", &[]),
+    ("forecast", &["strategy", "cores", "column"]),
+    ("case", &["ids"]),
+    ("guard", &["guard", "column"]),
+];
+
+/// The fields of the statistic of that name; `None` if there is no such statistic.
+pub(super) fn fields_of(name: &str) -> Option<Vec<&'static str>> {
+    let (_, own) = FIELDS.iter().find(|(known, _)| *known == name)?;
+    let shared = if OTHERS.contains(&name) { &[][..] } else { &OF_ROWS };
+    Some(shared.iter().chain(*own).copied().collect())
+}
+
+/// Whether any statistic has this field.
+pub(super) fn is_field_of_any(field: &str) -> bool {
+    OF_ROWS.contains(&field) || FIELDS.iter().any(|(_, own)| own.contains(&field))
+}
+
 impl Statistic {
     /// The columns that it asks for, each with the field that names it.
     pub(super) fn columns(&self) -> Vec<(&'static str, &str)> {
@@ -254,6 +285,39 @@ impl ForecastColumn {
             Self::Speedup => "speedup",
             Self::Efficiency => "efficiency",
             Self::SerialFraction => "serial fraction",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The names in a message of serde.
+    fn named(message: &str) -> Vec<&str> {
+        message.split('`').skip(1).step_by(2).collect()
+    }
+
+    /// The list has each statistic with the fields that it reads.
+    #[test]
+    fn the_list_of_fields_is_that_of_the_statistics() {
+        let wrong = Statistic::of("no-such", &toml::toml! { experiment = "e" }).unwrap_err().to_string();
+        assert!(FIELDS.iter().all(|(name, _)| wrong.contains(&format!("{name}"))), "{wrong}");
+        let count = wrong.split_once("allowed: ").unwrap().1.split(", ").count();
+        assert_eq!(count, FIELDS.len(), "{wrong}");
+        for (name, own) in FIELDS {
+            let fields = if OTHERS.contains(&name) {
+                Table::new()
+            } else {
+                toml::toml! { experiment = "e" }
+            };
+            let fields = fields.into_iter().chain([("no-such".to_string(), Value::Integer(1))]).collect();
+            let Err(crate::error::Error::Input(error)) = Statistic::of(name, &fields) else { panic!("{name}") };
+            let known: Vec<String> =
+                named(&error.problem).into_iter().chain(error.allowed.split(", ")).map(str::to_string).collect();
+            let known: Vec<&str> =
+                known.iter().map(String::as_str).filter(|own| !["no-such", ""].contains(own)).collect();
+            assert_eq!(known, own, "{name}: {error}");
         }
     }
 }

@@ -251,7 +251,7 @@ fn everything_a_claim_asks_for_exists() {
         (format!("statistic = \"mode\"\n{rows}"), vec!["X.toml:13", "mode", "rank-correlation"]),
         (format!("statistic = \"value\"\n{rows}"), vec!["X.toml:13", "column"]),
         (format!("statistic = \"value\"\ncolumn = \"seconds\"\n{rows}"), vec!["X.toml:14", "seconds", "makespan_s"]),
-        (format!("statistic = \"checksum\"\nx = \"spp\"\n{rows}"), vec!["X.toml:13", "`x`"]),
+        (format!("statistic = \"checksum\"\nx = \"spp\"\n{rows}"), vec!["X.toml:14", "field = x"]),
         (format!("statistic = \"checksum\"\n{}", rows.replace("level = 0.95\n", "")), vec!["X.toml:5", "level"]),
         (format!("statistic = \"checksum\"\n{}", rows.replace("0.95", "95")), vec!["X.toml:16", "95"]),
         (format!("statistic = \"checksum\"\n{}", rows.replace("at-least = 1.0", "")), vec!["X.toml:5", "within"]),
@@ -267,12 +267,15 @@ fn everything_a_claim_asks_for_exists() {
             vec!["X.toml:14", "over", "colour", "spp"],
         ),
         (
-            format!("statistic = \"count\"\ncolumn = \"spp\"\nrows = 3\n{}", rows.replace("rows", "over")),
+            format!(
+                "statistic = \"count\"\ncolumn = \"spp\"\nrows = 3\n{}",
+                rows.replace("rows = { scene = \"cornell\" }\n", "")
+            ),
             vec!["X.toml:15", "rows", "3"],
         ),
         (
             "statistic = \"case\"\nids = [\"a\"]\nexperiment = \"e\"\nat-most = 0.0".to_string(),
-            vec!["X.toml:13", "`experiment`"],
+            vec!["X.toml:15", "field = experiment", "ids"],
         ),
         (
             "statistic = \"guard\"\nguard = \"g\"\ncolumn = \"price\"".to_string(),
@@ -414,7 +417,8 @@ fn a_bound_younger_than_its_rows_is_told() {
     assert_eq!(age(after, after), (Verdict::Confirmed, false, Age::BoundFirst));
     assert_eq!(age("2025-12-31T23:59:59Z", after), (Verdict::Confirmed, true, Age::RowsFirst));
     assert_eq!(age("", after), (Verdict::Confirmed, true, Age::Unknown));
-    for wrong in ["2026-01-01", "2026-01-01T00:00:00+01:00", "soon 0123abcd"] {
+    assert_eq!(age("zzz", after), (Verdict::Confirmed, true, Age::Unknown));
+    for wrong in ["2026-01-01", "2026-01-01T00:00:00+01:00", "soon 0123abcd", "2026-99-99T99:99:99Z"] {
         let text = claim("context = \"c\"").replace("2026-01-01T00:00:00Z", wrong);
         let error = Report::from_text("X.toml", &text).unwrap_err().to_string();
         assert!(error.contains("frozen") && error.contains("0123abcd") && error.contains("X.toml:11"), "{error}");

@@ -10,4 +10,4 @@ pub use numbers::{
 };
 pub use text::{BYTE_ORDER_MARK, Limits, Text, open_text, read_text, read_text_up_to, unreadable};
 pub use toml_text::parse_within;
-pub use toml_text::{locate, locate_in, parse};
+pub use toml_text::{line_and_column, locate, locate_in, parse};

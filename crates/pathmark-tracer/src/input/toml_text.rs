@@ -59,7 +59,7 @@ fn located(text: &str, file: &str, message: &str, span: Option<Range<usize>>) ->
 }
 
 /// Returns line and column of a byte offset, counted from 1, columns in characters.
-fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
+pub fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
     let before = &text[..offset.min(text.len())];
     let start = before.rfind('\n').map_or(0, |at| at + 1);
     (before.matches('\n').count() + 1, before[start..].chars().count() + 1)
