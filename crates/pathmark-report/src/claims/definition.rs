@@ -48,12 +48,12 @@ use std::iter::once;
 use std::path::{Path, PathBuf};
 
 /// The evidence that answers a claim.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Needs<'a> {
     /// Rows of that experiment.
     Experiment(String),
-    /// Rows of another program, in that file.
-    Table(&'a str),
+    /// Rows of another program.
+    Table(&'a PlainRows),
     /// Hard cases or the price list of the guards.
     HardCases,
     /// Nothing that can be measured, and why.
@@ -276,14 +276,22 @@ impl Report {
     /// reports must be unique.
     pub fn read(path: &Path) -> Result<Vec<Self>> {
         let files = Self::files(path)?;
-        let of_file = |file: &PathBuf| Self::from_text(&file.display().to_string(), &read_text(file)?);
-        let ledgers = files.iter().map(of_file).collect::<Result<Vec<_>>>()?;
+        let of_file = |file: &PathBuf| {
+            let name = file.display().to_string();
+            Ok((Self::from_text(&name, &read_text(file)?)?, name))
+        };
+        Self::unique(files.iter().map(of_file))
+    }
+
+    /// The ledgers of some files, each with the name of its file.
+    fn unique(ledgers: impl Iterator<Item = Result<(Self, String)>>) -> Result<Vec<Self>> {
+        let (ledgers, files): (Vec<Self>, Vec<String>) = ledgers.collect::<Result<Vec<_>>>()?.into_iter().unzip();
         let mut letters = BTreeSet::new();
         let mut numbers = BTreeSet::new();
         for (file, ledger) in files.iter().zip(&ledgers) {
             let twice = |field: &str, value: String| {
                 let problem = "occurs twice; numbers of claims and names of reports are unique over all ledgers";
-                Err(InputError::new(field, value, problem).in_file(file.display().to_string(), None).into())
+                Err(InputError::new(field, value, problem).in_file(file, None).into())
             };
             if !letters.insert(&ledger.report) {
                 return twice("report", ledger.report.clone());
@@ -305,10 +313,12 @@ impl Report {
         Ok(files)
     }
 
-    /// The ledgers that a program added to its lab, or else the four reports.
+    /// The ledgers that a program added to its lab, or else the four reports. Their numbers and letters must be unique.
     pub fn all(lab: &Lab) -> Result<Vec<Self>> {
-        let texts = Self::texts(lab).iter();
-        texts.map(|(name, text)| Self::from_text(&format!("claims/{name}.toml"), text)).collect()
+        Self::unique(Self::texts(lab).iter().map(|(name, text)| {
+            let name = format!("claims/{name}.toml");
+            Ok((Self::from_text(&name, text)?, name))
+        }))
     }
 
     /// The names and texts of these ledgers.
@@ -322,7 +332,7 @@ impl Report {
         match claim.test().map(|test| &test.statistic) {
             Err((_, why)) => Needs::Nothing(why.to_string()),
             Ok(Statistic::OfRows { experiment, .. }) => match self.table(experiment) {
-                Some(table) => Needs::Table(table.file()),
+                Some(table) => Needs::Table(table),
                 None => Needs::Experiment(experiment.clone()),
             },
             Ok(Statistic::Case(_) | Statistic::Guard(_)) => Needs::HardCases,
