@@ -10,8 +10,8 @@
 # PATHMARK_PORTABILITY is the folder of the emulator, of the compilers and of what they make [default: ~/.cache/pathmark-portability]. The first run
 # installs a small Debian there, whose compiler has Rust's library for many processors. PATHMARK_PARTS names what to do, some of
 # "images files units paths contract cases" [default: all]; the last four are tests under emulation. Each emulated program may take PATHMARK_LIMIT
-# seconds [default: 600], and a program of tests three times as many; one that takes longer is named. target/portability keeps the checksums and
-# verdicts of each program, so an interrupted run continues.
+# seconds [default: 600], and a program of tests three times as many; one that takes longer is named. PATHMARK_CASES names the hard cases and their
+# order [default: all]. target/portability keeps the checksums and what has passed, so an interrupted run continues. Each verdict is printed at once.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 fail() { printf '%s\n' "$1" >&2; exit "$2"; }
@@ -84,15 +84,19 @@ checksum() { "$@" 2>/dev/null | grep -o 'checksum [0-9a-f]\{16,\}' || echo "no c
 # The files that it writes are compared, and a missing file is a difference.
 quietly() { "$@" >/dev/null 2>&1 || true; }
 digest() { if [ -e "$1" ]; then sha256sum <"$1"; else echo "no file"; fi; }
-# The folder of the checksums that a program prints.
-folder() { echo "$kept/$(sha256sum <"$1" | cut -c 1-12)/$2"; }
+# The folder of what a program with this compiler has printed. It belongs to the sources: the program itself also differs with each commit.
+folder() {
+    local key
+    key=$( (echo "$1" && find src crates experiments Cargo.toml Cargo.lock build.rs -type f -print0 | LC_ALL=C sort -z | xargs -0 sha256sum) | sha256sum)
+    echo "$kept/${key:0:12}/$2"
+}
 
 images() {
     local mine theirs rounds=1
     # A device has no program for half of the renders.
     [ "$architecture" != devices ] || rounds=3
-    mine=$(folder target/debug/pathmark "$(uname -m)-$rounds")
-    if [ "$architecture" = devices ]; then theirs=$mine-devices; else theirs=$(folder "$root/target/$target/debug/pathmark" "$architecture"); fi
+    mine=$(folder "$compiled_here" "$(uname -m)-$rounds")
+    if [ "$architecture" = devices ]; then theirs=$mine-devices; else theirs=$(folder "$compiled_there" "$architecture"); fi
     mkdir -p "$mine" "$theirs"
     # Named only when it is whole, because a run may be interrupted.
     if [ ! -e "$mine.options" ]; then
@@ -147,11 +151,13 @@ files() {
 # Tries a verb of the emulated program with each name, and prints a row for each. What has passed in an earlier run is not tried again.
 verdicts() {
     local verb=$1 rows name code
-    rows=$(folder "$root/target/$target/debug/pathmark" "$architecture-$1")
+    rows=$(folder "$compiled_there" "$architecture-$1")
     shift
     mkdir -p "$(dirname "$rows")"
     touch "$rows"
     sed -i '/ passed |$/!d' "$rows"
+    printf '| %s | result |\n|--|--|\n' "$verb"
+    cat "$rows"
     for name; do
         ! grep -qF "| $verb $name |" "$rows" || continue
         code=0
@@ -160,29 +166,41 @@ verdicts() {
             0) echo "| $verb $name | passed |" ;;
             124 | 137) echo "| $verb $name | NOT ENDED after $limit s |" ;;
             *) echo "| $verb $name | FAILED with code $code |" && cat "$work/said" >&2 ;;
-        esac >>"$rows"
+        esac | tee -a "$rows"
     done
-    printf '| %s | result |\n|--|--|\n' "$verb"
-    cat "$rows"
     grep -v 'passed |$' "$rows" >>"$work/differences" || true
 }
 
+# Runs tests of three crates: those that have not passed in an earlier run. All three are named each time, or Cargo would compile their libraries again
+# with other features. A name of two tests is always tried.
 tested() {
+    local kind=$1 log count name
+    local -a words names=() command
+    read -ra words <<<"$kind"
+    command=(within cargo test --no-fail-fast --locked --offline --target "$target" -p pathmark-tracer -p pathmark-strategy -p pathmark-lanes "${words[@]}")
     # A test program has many tests.
     local emulator=(timeout --foreground --kill-after=10 $((3 * limit)) "${emulator[@]:4}")
-    within cargo test --quiet --locked --offline --target "$target" -p pathmark-tracer -p pathmark-strategy -p pathmark-lanes "$@"
+    log=$(folder "$compiled_there" "$architecture-tests")
+    mkdir -p "$(dirname "$log")"
+    touch "$log"
+    "${command[@]}" -- --list "${@:2}" >"$work/list" || return
+    while read -r count name; do
+        [ "$count" = 1 ] && grep -qxF -e "$kind: test $name ... ok" "$log" || names+=("$name")
+    done < <(sed -n 's/: test$//p' "$work/list" | sort | uniq -c)
+    printf "%s\n" "$kind: ${#names[@]} of $(grep -c ': test$' "$work/list") tests have not passed yet"
+    [ ${#names[@]} = 0 ] || "${command[@]}" -- --exact "${names[@]}" </dev/null 2>&1 | sed -u "s/^test /$kind: &/" | tee -a "$log"
 }
 units() { tested --lib; }
 # Of the equilibrium of scenes one test in three: the others take longest.
-paths() { tested --test paths && tested --test equilibrium long_paths; }
+paths() { tested '--test paths' && tested '--test equilibrium' long_paths; }
 # Strategies one by one, so that the one that hangs has a name.
 contract() {
     verdicts contract $(here list strategies --json | grep -o '"name":"[^"]*"' | cut -d '"' -f 4) \
         dynamic:7 mfac:50 steal-one:richest steal-half:neighbour weighted-factoring:1:0.5
-    tested --test strategy_contract refusals::
+    tested '--test strategy_contract' refusals::
 }
 # All cases by name, which the message about a wrong name lists. Without names, the price list of the guards would be timed, too.
-cases() { verdicts selftest $( (here selftest none 2>&1 || true) | grep -oE '\b[A-Z][0-9]+\b'); }
+cases() { verdicts selftest ${PATHMARK_CASES:-$( (here selftest none 2>&1 || true) | grep -oE '\b[A-Z][0-9]+\b')}; }
 
 emulator=(timeout --foreground --kill-after=10 "$limit" "qemu-$architecture" -L "/usr/${tools:-}")
 emulated=("${emulator[@]}" "/target/${target:-}/debug/pathmark")
@@ -191,13 +209,14 @@ mkdir -p "$kept"
 work=$(mktemp -d "$kept/work-XXXXXX")
 trap 'rm -rf "$work"' EXIT
 touch "$work/differences"
-compiled="$(rustc --version) here"
+compiled_here="$(rustc --version) here"
+compiled_there=
 if [ "$architecture" != devices ]; then
     prepare
     within cargo build --locked --offline --target "$target"
-    compiled+=", $(within rustc --version) and $(within "qemu-$architecture" --version | head -n 1) there"
+    compiled_there="$(within rustc --version) and $(within "qemu-$architecture" --version | head -n 1) there"
 fi
-echo "$architecture, $(date -u +%F), commit $(git rev-parse --short=12 HEAD), $compiled"
+echo "$architecture, $(date -u +%F), commit $(git rev-parse --short=12 HEAD), $compiled_here${compiled_there:+, $compiled_there}"
 for part in $parts; do
     printf '\n%s\n' "$part"
     # In a condition, Bash would go on after an error within the part.
