@@ -106,42 +106,6 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     /// `self`, but lanes in the mask get the next of the numbers, in order. There must be as many numbers as lanes.
     #[must_use]
     fn fill(self, mask: Self::Mask, from: &[Self::One]) -> Self;
-    /// Stores the numbers where the mask holds, in order. There must be room for all lanes; places behind the stored
-    /// numbers may change.
-    #[inline(always)]
-    fn pack(self, mask: Self::Mask, to: &mut [Self::One]) {
-        let mut all = [Self::One::default(); MOST_LANES];
-        self.store(&mut all);
-        let bits = mask.bits();
-        let mut next = 0;
-        for (lane, number) in all.iter().enumerate().take(Self::LANES) {
-            to[next] = *number;
-            next += (bits >> lane & 1) as usize;
-        }
-    }
-    /// Packs numbers behind the first `count` of a list, and their keys into the other list. Then the first number with
-    /// the least key and the last number change places, and so do their keys. Returns the new count. No key in the mask
-    /// may be NaN.
-    #[inline(always)]
-    fn pack_least_last(
-        self,
-        keys: Self,
-        mask: Self::Mask,
-        [to, keys_to]: [&mut [Self::One]; 2],
-        count: usize,
-    ) -> usize {
-        self.pack(mask, &mut to[count..]);
-        keys.pack(mask, &mut keys_to[count..]);
-        let least = Self::splat(Self::select(mask, keys, Self::splat(f64::INFINITY)).least());
-        let (mask, is_least) = (mask.bits(), (mask & keys.equal(least)).bits());
-        // The lanes below the least; all of them if there is none.
-        let before = is_least.wrapping_sub(1) & !is_least;
-        let place = count + (mask & before).count_ones() as usize;
-        let last = count + (mask.count_ones().max(1) - 1) as usize;
-        to.swap(place, last);
-        keys_to.swap(place, last);
-        count + mask.count_ones() as usize
-    }
     /// A number, rounded if need be.
     fn one(value: f64) -> Self::One;
     fn lane(&self, lane: usize) -> f64;

@@ -142,10 +142,6 @@ impl Work for Operations {
         }
         digits_are_those_of_words::<V>();
         lanes_move::<V>();
-        lanes_are_packed::<V>();
-        lanes_are_packed::<V::Single>();
-        least_keys_come_last::<V>();
-        least_keys_come_last::<V::Single>();
     }
 }
 
@@ -265,52 +261,6 @@ fn lanes_move<V: Float>() {
         w.set_word(lane, lane as u64);
     }
     assert!((0..V::LANES).all(|lane| v.lane(lane) == lane as f64 && w.word(lane) == lane as u64));
-}
-
-/// The numbers that a mask selects come out in order.
-#[inline(always)]
-fn lanes_are_packed<V: Float>() {
-    let counted = of::<V>(std::array::from_fn(|k| k as f64 + 0.5));
-    let all = u32::MAX >> (MOST_LANES - V::LANES);
-    for mask in (0..=all).step_by(if V::LANES > 8 { (all / 691) as usize } else { 1 }) {
-        let mut packed = [V::One::default(); MOST_LANES];
-        counted.pack(V::Mask::from_bits(mask), &mut packed);
-        let expected = (0..V::LANES).filter(|lane| mask >> lane & 1 == 1).map(|lane| lane as f64 + 0.5);
-        for (found, expected) in packed.into_iter().zip(expected) {
-            let found: f64 = found.into();
-            assert_eq!(found, expected, "{mask:b}");
-        }
-    }
-}
-
-/// The numbers that a mask selects come out in order, except that the first one with the least key is the last.
-#[inline(always)]
-fn least_keys_come_last<V: Float>() {
-    const BEFORE: usize = 3;
-    let counted = of::<V>(std::array::from_fn(|k| k as f64 + 0.5));
-    let all = u32::MAX >> (MOST_LANES - V::LANES);
-    for mask in (0..=all).step_by(if V::LANES > 8 { (all / 691) as usize } else { 1 }) {
-        for shift in 0..5 {
-            let keys: [f64; MOST_LANES] = std::array::from_fn(|k| ((7 * k + shift) % 5) as f64);
-            let mut lists = [[V::One::default(); 2 * MOST_LANES]; 2];
-            let [numbers, of_numbers] = &mut lists;
-            let mask = V::Mask::from_bits(mask);
-            let count = counted.pack_least_last(of::<V>(keys), mask, [numbers, of_numbers], BEFORE);
-            let mut expected: Vec<[f64; 2]> = (0..V::LANES)
-                .filter(|lane| mask.bits() >> lane & 1 == 1)
-                .map(|lane| [lane as f64 + 0.5, keys[lane]])
-                .collect();
-            if let Some(least) = (0..expected.len()).min_by(|a, b| expected[*a][1].total_cmp(&expected[*b][1])) {
-                let last = expected.len() - 1;
-                expected.swap(least, last);
-            }
-            assert_eq!(count, BEFORE + expected.len());
-            for (place, expected) in (BEFORE..).zip(expected) {
-                let found: [f64; 2] = lists.map(|list| list[place].into());
-                assert_eq!(found, expected, "{:b}, {keys:?}", mask.bits());
-            }
-        }
-    }
 }
 
 #[test]

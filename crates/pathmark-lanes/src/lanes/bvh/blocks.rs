@@ -194,10 +194,15 @@ fn corner<V: Float>(block: &[V::One], first: usize, ray: &ShearedRay<V>) -> [V; 
 }
 
 impl Leaf {
-    /// Whether it holds anything besides one block of spheres.
+    /// Whether it holds more than one block of spheres.
     #[inline(always)]
-    pub(super) fn has_rest(&self) -> bool {
-        self.spheres[0] + 1 < self.spheres[1] || self.triangles[0] < self.triangles[1]
+    pub(super) fn has_more_spheres(&self) -> bool {
+        self.spheres[0] + 1 < self.spheres[1]
+    }
+
+    #[inline(always)]
+    pub(super) fn has_triangles(&self) -> bool {
+        self.triangles[0] < self.triangles[1]
     }
 }
 
@@ -277,25 +282,35 @@ impl Blocks {
         }
     }
 
-    /// Tests a ray against all primitives of a leaf except its first block of spheres.
+    /// Tests a ray against all spheres of a leaf except its first block.
     #[inline(always)]
-    pub(super) fn test_rest<V: Float>(&self, leaf: &Leaf, surfaces: &Table, ray: &Single<V>, best: &mut Best) {
+    pub(super) fn test_more_spheres<V: Float>(&self, leaf: &Leaf, surfaces: &Table, ray: &Single<V>, best: &mut Best) {
         for block in leaf.spheres[0] + 1..leaf.spheres[1] {
             let near = self.near(block, ray, self.scale.limit(best.nearest));
             if near != 0 {
                 self.test_near(block, near, surfaces, ray, best);
             }
         }
-        let Some(turned) = &ray.turned else { return };
+    }
+
+    /// Tests a ray that starts on the primitive `from` against all triangles of a leaf.
+    #[inline(always)]
+    pub(super) fn test_triangles<V: Float>(
+        &self,
+        leaf: &Leaf,
+        from: f64,
+        ray: &ShearedRay<V::Register>,
+        best: &mut Best,
+    ) {
         let triangles = V::One::all(&self.triangles);
         for block in leaf.triangles[0]..leaf.triangles[1] {
             let of_block = OF_TRIANGLE * V::Register::LANES;
             let block = &triangles[block as usize * of_block..][..of_block];
             // No closure: on NEON it would stay a function that is called three times.
-            let [a, b] = [corner::<V::Register>(block, 0, turned), corner::<V::Register>(block, 3, turned)];
-            let crossing = Crossing::of([a, b, corner::<V::Register>(block, 6, turned)]);
+            let [a, b] = [corner::<V::Register>(block, 0, ray), corner::<V::Register>(block, 3, ray)];
+            let crossing = Crossing::of([a, b, corner::<V::Register>(block, 6, ray)]);
             let numbers = column::<V::Register>(block, OF_TRIANGLE - 1);
-            let is_own = V::Register::splat(ray.from).equal(V::Register::load(numbers));
+            let is_own = V::Register::splat(from).equal(V::Register::load(numbers));
             let is_met = crossing.is_met & !is_own;
             if is_met.any() {
                 let root = crossing.root();

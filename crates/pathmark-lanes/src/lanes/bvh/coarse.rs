@@ -130,6 +130,12 @@ impl AllCoarse {
         [W::splat(x.into()), W::splat(y.into()), W::splat(z.into())]
     }
 
+    /// [`Coarse::first`] of the axis whose inverse is in this row.
+    #[inline(always)]
+    fn first<W: Float>(&self, inverse: usize, lane: usize) -> usize {
+        (self.rows[inverse][lane].to_bits() >> 31) as usize * W::LANES
+    }
+
     /// The ray of one lane, repeated in all lanes.
     #[inline(always)]
     pub(super) fn of_lane<W: Float<One = f32>>(&self, lane: usize) -> Coarse<W> {
@@ -140,7 +146,7 @@ impl AllCoarse {
             far: self.three(9, lane),
             origin: self.three(12, lane),
             padding: W::splat(self.rows[15][lane].into()),
-            backward: [self.rows[3][lane] < 0.0, self.rows[4][lane] < 0.0, self.rows[5][lane] < 0.0],
+            first: [self.first::<W>(3, lane), self.first::<W>(4, lane), self.first::<W>(5, lane)],
         }
     }
 }
@@ -153,24 +159,26 @@ pub(super) struct Coarse<W> {
     far: [W; 3],
     origin: [W; 3],
     padding: W,
-    /// For each axis, whether the ray goes towards smaller coordinates and so meets the high face of a box first.
-    backward: [bool; 3],
+    /// For each axis the place of the faces that the ray meets first, in a row of low faces and then high ones: if it
+    /// goes towards smaller coordinates, that of the high ones.
+    first: [usize; 3],
 }
 
 impl<W: Float<One = f32>> Coarse<W> {
     /// Distances at which the ray enters the boxes with these faces, and whether it does so no farther than `limit`.
+    /// For each axis the low faces come first, then the high ones.
     ///
     /// A ray along a face gives NaN for that axis. The comparisons then keep the result of the other axes, so the box
     /// is accepted.
     #[inline(always)]
     pub(super) fn enter(&self, faces: &[f32], limit: f32) -> (W, W::Mask) {
         let (mut enter, mut leave) = (W::splat(0.0), W::splat(limit.into()));
-        // With this length and constant offsets, the loads need no further checks.
+        // With this length and these bounds, the loads need no further checks.
         let faces = &faces[..6 * W::LANES];
         for axis in 0..3 {
-            let (low, high) = (&faces[axis * W::LANES..], &faces[(3 + axis) * W::LANES..]);
-            let (low, high) = (&low[..W::LANES], &high[..W::LANES]);
-            let (first, last) = if self.backward[axis] { (high, low) } else { (low, high) };
+            let of_axis = &faces[2 * axis * W::LANES..][..2 * W::LANES];
+            let first = self.first[axis] & W::LANES;
+            let (first, last) = (&of_axis[first..][..W::LANES], &of_axis[W::LANES - first..][..W::LANES]);
             enter = W::load(first).about_times_plus(self.inverse[axis], self.near[axis]).at_least(enter);
             leave = W::load(last).about_times_plus(self.inverse[axis], self.far[axis]).at_most(leave);
         }
@@ -264,7 +272,8 @@ mod tests {
                 let rows = |numbers: &[f64]| -> Vec<f32> {
                     numbers.iter().flat_map(|number| vec![*number as f32; V::Single::LANES]).collect()
                 };
-                let (_, met) = coarse.enter(&rows(&[padded.low, padded.high].concat()), scale.limit(distance));
+                let faces = [0, 1, 2].map(|axis| [padded.low[axis], padded.high[axis]]);
+                let (_, met) = coarse.enter(&rows(&faces.concat()), scale.limit(distance));
                 wrong += usize::from(!met.any());
                 let sphere = scale.sphere(&bounds, center, radius);
                 // A hit at exactly the limit must not be rejected.

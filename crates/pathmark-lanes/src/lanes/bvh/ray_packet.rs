@@ -18,7 +18,6 @@ pub(super) struct RayPacket<V: Float> {
     turned: [[V::One; MOST_LANES]; 6],
     /// [`Shear::axes`].
     axes: [[usize; 3]; MOST_LANES],
-    has_triangles: bool,
     /// Distances and numbers of the nearest primitives so far.
     pub(super) nearest: [V::One; MOST_LANES],
     pub(super) primitive: [V::One; MOST_LANES],
@@ -35,7 +34,6 @@ impl<V: Float> RayPacket<V> {
             coarse: AllCoarse::empty(),
             turned: [none; 6],
             axes: [[0; 3]; MOST_LANES],
-            has_triangles: false,
             nearest: none,
             primitive: none,
             limits: [0.0; MOST_LANES],
@@ -56,7 +54,6 @@ impl<V: Float> RayPacket<V> {
             *limit = scale.limit((*nearest).into());
         }
         let are_in_range = self.coarse.fill(&rays.ray, scale).bits();
-        self.has_triangles = has_triangles;
         if has_triangles {
             let turned = ShearedRays::of(rays);
             let [x, y, z] = turned.axes(origin);
@@ -74,15 +71,22 @@ impl<V: Float> RayPacket<V> {
     #[inline(always)]
     pub(super) fn of_lane(&self, lane: usize) -> Single<V> {
         let [ox, oy, oz, dx, dy, dz, from] = self.rows.each_ref().map(|row| row[lane].into());
-        let turned = if self.has_triangles {
-            let [x, y, z, by_x, by_y, by_z] = self.turned.each_ref().map(|row| row[lane].into());
-            let shear = Shear { axes: self.axes[lane], by: three([by_x, by_y, by_z]) };
-            Some(ShearedRay { origin: three([x, y, z]), shear })
-        } else {
-            None
-        };
         let (origin, direction) = (Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
-        Single { origin, direction, from, coarse: self.coarse.of_lane(lane), turned }
+        Single { origin, direction, from, coarse: self.coarse.of_lane(lane) }
+    }
+
+    /// Number of the primitive that a ray starts on.
+    #[inline(always)]
+    pub(super) fn from(&self, lane: usize) -> f64 {
+        self.rows[6][lane].into()
+    }
+
+    /// A ray in its own axes, in a scene with triangles.
+    #[inline(always)]
+    pub(super) fn sheared(&self, lane: usize) -> ShearedRay<V::Register> {
+        let [x, y, z, by_x, by_y, by_z] = self.turned.each_ref().map(|row| row[lane].into());
+        let shear = Shear { axes: self.axes[lane], by: three([by_x, by_y, by_z]) };
+        ShearedRay { origin: three([x, y, z]), shear }
     }
 }
 
@@ -96,8 +100,6 @@ pub(super) struct Single<V: Float> {
     /// Number of the primitive that the ray starts on, as in [`Rays`].
     pub(super) from: f64,
     pub(super) coarse: Coarse<V::Single>,
-    /// `None` in a scene without triangles.
-    pub(super) turned: Option<ShearedRay<V::Register>>,
 }
 
 /// A ray in its own axes, repeated in all lanes.

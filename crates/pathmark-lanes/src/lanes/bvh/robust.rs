@@ -1,6 +1,6 @@
 //! The search for sure hits along a single ray, for rays whose hits in a packet may be due to rounding alone.
 
-use super::tree::{IS_LEAF, PLACES, Tree};
+use super::tree::{DISTANCES, IS_LEAF, ROWS, Tree};
 use super::wide::{Search, Wide};
 use crate::lanes::spheres_f32::SpheresF32;
 use pathmark_tracer::math::Ray;
@@ -28,12 +28,12 @@ impl Wide {
 
         let scale = self.blocks.scale.0;
         let slabs = Slabs::new(&Ray { origin: ray.origin * scale, ..*ray });
-        let mut waiting = Waiting { children: [(0.0, 0); PLACES], count: 0 };
-        let mut next = Some(0);
+        let mut waiting = Waiting { children: [(0.0, 0); DISTANCES], count: 0 };
+        let mut next = Some(tree.root);
         while let Some(child) = next {
             if child < IS_LEAF {
-                tests.boxes += u64::from(tree.counts[child as usize]);
-                waiting.push(tree.entered(child as usize, &slabs, nearest.t * scale));
+                tests.boxes += Tree::node(child).1;
+                waiting.push(tree.entered(child, &slabs, nearest.t * scale));
             } else {
                 let leaf = &tree.leaves[(child & !IS_LEAF) as usize];
                 tests.primitives += u64::from(leaf.primitives);
@@ -47,20 +47,20 @@ impl Wide {
 
 impl Tree {
     /// The children of a node whose boxes a ray enters no farther than `limit`, and the distances of entry.
-    fn entered(&self, node: usize, slabs: &Slabs, limit: f64) -> impl Iterator<Item = (f64, u32)> {
-        let width = self.children.len() / self.counts.len();
-        let faces = &self.faces[node * 6 * width..][..6 * width];
-        (0..self.counts[node] as usize).filter_map(move |lane| {
-            let side = |first: usize| [0, 1, 2].map(|axis| f64::from(faces[(first + axis) * width + lane]));
-            let enter = slabs.enter(&[side(0), side(3)], limit)?;
-            Some((enter, self.children[node * width + lane].to_bits()))
+    fn entered(&self, node: u32, slabs: &Slabs, limit: f64) -> impl Iterator<Item = (f64, u32)> {
+        let (width, (node, count)) = (self.width, Self::node(node));
+        let rows = &self.nodes[node * ROWS * width..][..ROWS * width];
+        (0..count as usize).filter_map(move |lane| {
+            let side = |first: usize| [0, 1, 2].map(|axis| f64::from(rows[(2 * axis + first) * width + lane]));
+            let enter = slabs.enter(&[side(0), side(1)], limit)?;
+            Some((enter, rows[(ROWS - 1) * width + lane].to_bits()))
         })
     }
 }
 
 /// Waiting children, and the distances at which the ray enters their boxes.
 struct Waiting {
-    children: [(f64, u32); PLACES],
+    children: [(f64, u32); DISTANCES],
     count: usize,
 }
 
@@ -151,10 +151,10 @@ mod tests {
     fn in_entered_leaves(wide: &Wide, ray: &Ray) -> u64 {
         let Search::Tree(tree) = &wide.search else { return 0 };
         let slabs = Slabs::new(&Ray { origin: ray.origin * wide.blocks.scale.0, ..*ray });
-        let (mut primitives, mut waiting) = (0, vec![0]);
+        let (mut primitives, mut waiting) = (0, vec![tree.root]);
         while let Some(child) = waiting.pop() {
             if child < IS_LEAF {
-                waiting.extend(tree.entered(child as usize, &slabs, f64::INFINITY).map(|(_, child)| child));
+                waiting.extend(tree.entered(child, &slabs, f64::INFINITY).map(|(_, child)| child));
             } else {
                 primitives += u64::from(tree.leaves[(child & !IS_LEAF) as usize].primitives);
             }

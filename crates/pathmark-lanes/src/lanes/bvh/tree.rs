@@ -7,26 +7,30 @@ use super::coarse::Scale;
 use super::collapse::{Child, CollapsedBvh, Content};
 use super::ray_packet::RayPacket;
 use crate::lanes::rays::LanesOf;
-use crate::simd::{Aligned, Apart, Float, MOST_LANES, Table, prefetch};
+use crate::simd::{Aligned, Apart, Float, MOST_LANES, Mask, Table, prefetch};
 use pathmark_tracer::scene::{Bounds, Tests};
 
 /// The tree; its root is the first node.
 pub(super) struct Tree {
-    /// For each node the lowest x, y and z of all children, then the highest.
-    pub(super) faces: Aligned<f32>,
-    /// For each node one entry per lane, as bits of a number: a node's number, or with [`IS_LEAF`] a leaf's.
-    pub(super) children: Aligned<f32>,
-    /// Number of children of each node.
-    pub(super) counts: Vec<u32>,
+    /// For each node [`ROWS`] of numbers, one for each lane: the lowest x of its children, their highest, likewise y
+    /// and z, and the children as bits of numbers: a leaf's number with [`IS_LEAF`], or a node's with the number of its
+    /// own children from the bit [`COUNT`] on.
+    pub(super) nodes: Aligned<f32>,
     pub(super) leaves: Vec<Leaf>,
+    pub(super) root: u32,
+    /// Children of a node at most.
+    pub(super) width: usize,
 }
 
 /// Bytes of primitives that fit a processor's caches. Up to this size, prefetches cost more than waiting for memory.
 const CACHED: usize = 16 << 20;
 
 pub(super) const IS_LEAF: u32 = 1 << 31;
-/// No leaf has this number.
-const NOTHING: u32 = u32::MAX;
+/// The bit of a node's number from which on it holds the number of its children. There are fewer nodes than primitives,
+/// and fewer than 2^24 primitives.
+const COUNT: u32 = 24;
+/// Rows of a node. The last one holds its children.
+pub(super) const ROWS: usize = 7;
 
 impl Tree {
     pub(super) fn of(collapsed: &CollapsedBvh, width: usize, scale: Scale, builder: &mut BlocksBuilder<'_>) -> Self {
@@ -36,22 +40,22 @@ impl Tree {
         };
         let in_leaves = || collapsed.children().iter().filter_map(of_leaf);
         builder.make_room(in_leaves());
-        let count = collapsed.nodes().len();
-        let mut faces = Aligned::with_capacity(6 * width * count);
-        let mut children = Aligned::with_capacity(width * count);
+        let counts: Vec<u32> = collapsed.nodes().map(|node| node.len() as u32).collect();
+        let numbered = |node: u32| counts[node as usize] << COUNT | node;
+        let mut nodes = Aligned::with_capacity(ROWS * width * counts.len());
         let mut leaves = Vec::with_capacity(in_leaves().count());
         for node in collapsed.nodes() {
             let mut bounds = [Bounds::EMPTY; MOST_LANES];
             bounds.iter_mut().zip(node).for_each(|(bounds, child)| *bounds = scale.padded(&child.bounds));
             for k in 0..6 {
                 // A missing child has a box with exchanged sides, which no ray in range meets.
-                let face = |bounds: &Bounds| if k < 3 { bounds.low[k] } else { bounds.high[k - 3] };
-                faces.extend(bounds[..width].iter().map(|bounds| face(bounds) as f32));
+                let face = |bounds: &Bounds| if k % 2 == 0 { bounds.low[k / 2] } else { bounds.high[k / 2] };
+                nodes.extend(bounds[..width].iter().map(|bounds| face(bounds) as f32));
             }
-            children.extend((0..width).map(|lane| {
+            nodes.extend((0..width).map(|lane| {
                 f32::from_bits(match node.get(lane).map(|child| child.content) {
                     None => 0,
-                    Some(Content::Node(node)) => node,
+                    Some(Content::Node(node)) => numbered(node),
                     Some(Content::Primitives { first, count }) => {
                         leaves.push(builder.add(collapsed.primitives(first, count).iter().copied()));
                         (leaves.len() - 1) as u32 | IS_LEAF
@@ -59,8 +63,13 @@ impl Tree {
                 })
             }));
         }
-        let counts = collapsed.nodes().map(|node| node.len() as u32).collect();
-        Self { faces, children, counts, leaves }
+        Self { nodes, leaves, root: numbered(0), width }
+    }
+
+    /// The place of a node, and the number of its children.
+    #[inline(always)]
+    pub(super) fn node(node: u32) -> (usize, u64) {
+        ((node & ((1 << COUNT) - 1)) as usize, u64::from(node >> COUNT))
     }
 }
 
@@ -86,33 +95,42 @@ impl<V: Float> Apart for Traversal<'_, V> {
     fn run(mut self) {
         let is_large = self.blocks.bytes() > CACHED;
         for lane in LanesOf(self.wanted) {
-            (self.stacks[lane].count, self.stacks[lane].next) = (0, 0);
+            (self.stacks[lane].count, self.stacks[lane].next) = (0, self.tree.root);
         }
         let mut at_nodes = self.wanted;
         while at_nodes != 0 {
-            self.enter_nodes(at_nodes);
-            let mut at_leaves = 0;
-            for lane in LanesOf(std::mem::take(&mut at_nodes)) {
-                self.go_on(lane, is_large);
-                at_nodes |= u32::from(self.stacks[lane].is_at_node()) << lane;
-                at_leaves |= u32::from(self.stacks[lane].is_at_leaf()) << lane;
+            let mut turn = self.enter_nodes(at_nodes);
+            if is_large {
+                self.prefetch_next(&turn);
             }
-            while at_leaves != 0 {
+            for lane in LanesOf(turn.missed) {
+                self.go_back(lane, is_large, &mut turn);
+            }
+            while turn.at_leaves != 0 {
+                let at_leaves = std::mem::take(&mut turn.at_leaves);
                 if self.blocks.has_spheres() {
                     self.meet_spheres(at_leaves);
                 }
                 if is_large {
                     self.prefetch_triangles(at_leaves);
                 }
-                for lane in LanesOf(std::mem::take(&mut at_leaves)) {
+                for lane in LanesOf(at_leaves) {
                     self.meet_rest(lane);
-                    self.go_on(lane, is_large);
-                    at_nodes |= u32::from(self.stacks[lane].is_at_node()) << lane;
-                    at_leaves |= u32::from(self.stacks[lane].is_at_leaf()) << lane;
+                    self.go_back(lane, is_large, &mut turn);
                 }
             }
+            at_nodes = turn.at_nodes;
         }
     }
+}
+
+/// The lanes of rays, by where they are.
+#[derive(Default)]
+struct Turn {
+    at_nodes: u32,
+    at_leaves: u32,
+    /// Rays that have met no child of their node.
+    missed: u32,
 }
 
 impl<V: Float> Traversal<'_, V> {
@@ -133,29 +151,54 @@ impl<V: Float> Traversal<'_, V> {
         self.rays.limits[lane] = self.blocks.scale.limit(self.rays.nearest[lane].into());
     }
 
-    /// Tests rays against the boxes of their current nodes, and keeps the children that they meet.
+    /// Tests rays against the boxes of their current nodes. Each ray continues with the nearest child that it meets,
+    /// and the others wait.
     #[inline(always)]
-    fn enter_nodes(&mut self, at_nodes: u32) {
+    fn enter_nodes(&mut self, at_nodes: u32) -> Turn {
         let (tree, lanes) = (self.tree, V::Single::LANES);
-        let mut boxes = 0;
+        let (mut turn, mut boxes) = (Turn::default(), 0);
         for lane in LanesOf(at_nodes) {
-            let node = self.stacks[lane].next as usize;
-            boxes += u64::from(tree.counts[node]);
+            let (node, count) = Tree::node(self.stacks[lane].next);
+            boxes += count;
             let coarse = self.rays.coarse.of_lane::<V::Single>(lane);
             // A range of known length is checked once.
-            let (faces, children) = (node * 6 * lanes, node * lanes);
-            let (enter, met) = coarse.enter(&tree.faces[faces..faces + 6 * lanes], self.rays.limits[lane]);
-            self.stacks[lane].push(V::Single::load(&tree.children[children..children + lanes]), enter, met);
+            let (first, length) = (node * ROWS * lanes, ROWS * lanes);
+            let rows = &tree.nodes[first..first + length];
+            let (enter, met) = coarse.enter(rows, self.rays.limits[lane]);
+            let children = (ROWS - 1) * lanes;
+            let nearest = self.stacks[lane].push((first + children) as u32, enter, met);
+            let child = rows[children + nearest].to_bits();
+            self.stacks[lane].next = child;
+            turn.missed |= u32::from(met.bits() == 0) << lane;
+            turn.at_leaves |= (child / IS_LEAF) << lane;
         }
+        turn.at_leaves &= !turn.missed;
+        turn.at_nodes = at_nodes & !turn.missed & !turn.at_leaves;
         self.tests.boxes += boxes;
+        turn
     }
 
-    /// Moves a ray to its next node or leaf.
+    /// Moves a ray to a waiting child.
     #[inline(always)]
-    fn go_on(&mut self, lane: usize, is_large: bool) {
-        self.stacks[lane].pop(self.rays.limits[lane]);
+    fn go_back(&mut self, lane: usize, is_large: bool, turn: &mut Turn) {
+        let stack = &mut self.stacks[lane];
+        let Some(child) = stack.pop::<V::Single>(&self.tree.nodes, self.rays.limits[lane]) else { return };
+        stack.next = child;
+        let is_at_leaf = child / IS_LEAF;
+        turn.at_nodes |= (1 - is_at_leaf) << lane;
+        turn.at_leaves |= is_at_leaf << lane;
         if is_large {
-            self.tree.prefetch::<V>(&self.stacks[lane]);
+            if is_at_leaf == 0 { self.tree.prefetch_node::<V>(child) } else { self.tree.prefetch_leaf::<V>(child) }
+        }
+    }
+
+    #[inline(always)]
+    fn prefetch_next(&self, turn: &Turn) {
+        for lane in LanesOf(turn.at_nodes) {
+            self.tree.prefetch_node::<V>(self.stacks[lane].next);
+        }
+        for lane in LanesOf(turn.at_leaves) {
+            self.tree.prefetch_leaf::<V>(self.stacks[lane].next);
         }
     }
 
@@ -192,56 +235,78 @@ impl<V: Float> Traversal<'_, V> {
     fn meet_rest(&mut self, lane: usize) {
         let leaf = *self.leaf(lane);
         self.tests.primitives += u64::from(leaf.primitives);
-        if leaf.has_rest() {
+        let (has_more_spheres, has_triangles) = (leaf.has_more_spheres(), leaf.has_triangles());
+        if has_more_spheres | has_triangles {
             let mut best = self.best(lane);
-            self.blocks.test_rest(&leaf, self.surfaces, &self.rays.of_lane(lane), &mut best);
+            if has_more_spheres {
+                self.blocks.test_more_spheres(&leaf, self.surfaces, &self.rays.of_lane(lane), &mut best);
+            }
+            if has_triangles {
+                self.blocks.test_triangles::<V>(&leaf, self.rays.from(lane), &self.rays.sheared(lane), &mut best);
+            }
             self.keep(lane, &best);
         }
     }
 }
 
 impl Tree {
-    /// Prefetches the next node or leaf of a ray.
     #[inline(always)]
-    fn prefetch<V: Float>(&self, stack: &Stack) {
-        let (lanes, next) = (V::Single::LANES, stack.next as usize);
-        if stack.is_at_node() {
-            prefetch::<V, _>(&self.faces, next * 6 * lanes, 6 * lanes);
-            prefetch::<V, _>(&self.children, next * lanes, lanes);
-        } else if stack.is_at_leaf() {
-            prefetch::<V, _>(&self.leaves, next & !(IS_LEAF as usize), 1);
-        }
+    fn prefetch_node<V: Float>(&self, node: u32) {
+        let length = ROWS * V::Single::LANES;
+        prefetch::<V, _>(&self.nodes, Self::node(node).0 * length, length);
+    }
+
+    #[inline(always)]
+    fn prefetch_leaf<V: Float>(&self, leaf: u32) {
+        prefetch::<V, _>(&self.leaves, (leaf & !IS_LEAF) as usize, 1);
     }
 }
 
-/// Most children that may wait for a ray: about 15 per level of a tree of ten levels, on the widest registers.
-const MOST_WAITING: usize = 160;
+/// Most nodes, one below the other, that may have waiting children.
+const MOST_LEVELS: usize = 110;
+/// Room for the distances of children of as many nodes; on the widest registers there are fewer levels.
+pub(super) const DISTANCES: usize = 29 * 16;
 
-/// Whether there is room for all children that may wait for a ray at a time, in a tree of these nodes. Each node comes
-/// after its parent.
-pub(super) fn is_shallow(collapsed: &CollapsedBvh) -> bool {
-    let mut below = vec![0; collapsed.nodes().len()];
+/// The most levels of nodes with so many children.
+const fn most_levels(width: usize) -> usize {
+    if DISTANCES / width < MOST_LEVELS { DISTANCES / width } else { MOST_LEVELS }
+}
+
+/// Whether there is room for all children that may wait for a ray at a time, in a tree of these nodes with so many
+/// children. Each node comes after its parent.
+pub(super) fn is_shallow(collapsed: &CollapsedBvh, width: usize) -> bool {
+    let mut levels = vec![0; collapsed.nodes().len()];
     for (index, node) in collapsed.nodes().enumerate().rev() {
-        let deepest = node.iter().map(|child| match child.content {
-            Content::Node(node) => below[node as usize],
+        let below = node.iter().map(|child| match child.content {
+            Content::Node(node) => levels[node as usize],
             Content::Primitives { .. } => 0,
         });
-        below[index] = node.len() - 1 + deepest.max().unwrap_or(0);
+        levels[index] = 1 + below.max().unwrap_or(0);
     }
-    below[0] <= MOST_WAITING
+    levels[0] <= most_levels(width)
 }
 
 /// The nodes and leaves that a ray has yet to visit.
 #[derive(Clone)]
+#[repr(align(64))]
 pub(in crate::lanes) struct Stack {
-    /// The next one: the number of a node, of a leaf with [`IS_LEAF`], or [`NOTHING`].
-    next: u32,
-    /// Waiting children, as bits of numbers, and the distances at which the ray enters their boxes.
-    children: [f32; PLACES],
-    distances: [f32; PLACES],
+    /// For each level the distances at which the ray enters the boxes of all children of a node.
+    distances: [f32; DISTANCES],
+    levels: [Waiting; MOST_LEVELS],
     count: usize,
+    /// The current one: the number of a node, or with [`IS_LEAF`] of a leaf.
+    next: u32,
     /// The spheres of the current block that the ray comes near, as bits.
     near: u32,
+}
+
+/// The children of a node that a ray has yet to visit.
+#[derive(Clone, Copy)]
+struct Waiting {
+    /// The place of the node's first child.
+    first: u32,
+    /// As bits, not 0; lanes whose boxes begin beyond the limit at the time of the last removal are left out.
+    which: u32,
 }
 
 /// The stacks of all lanes, aligned to a page.
@@ -261,45 +326,56 @@ impl Stacks {
     }
 }
 
-/// Room for the waiting children, and for the children of one node, which are pushed all together.
-pub(super) const PLACES: usize = MOST_WAITING + 2 * MOST_LANES;
-
 impl Stack {
-    pub(in crate::lanes) const EMPTY: Self =
-        Self { next: NOTHING, children: [0.0; PLACES], distances: [0.0; PLACES], count: 0, near: 0 };
+    pub(in crate::lanes) const EMPTY: Self = Self {
+        distances: [0.0; DISTANCES],
+        levels: [Waiting { first: 0, which: 0 }; MOST_LEVELS],
+        count: 0,
+        next: 0,
+        near: 0,
+    };
 
+    /// Keeps a node's children that are met and returns the lane of the nearest; the others wait. `first` is the place
+    /// of the node's first child. If none is met, the result is any lane.
     #[inline(always)]
-    fn is_at_node(&self) -> bool {
-        self.next < IS_LEAF
-    }
-
-    #[inline(always)]
-    fn is_at_leaf(&self) -> bool {
-        self.next >= IS_LEAF && self.next != NOTHING
-    }
-
-    /// Keeps a node's children that are met, the nearest of them last. The others are not sorted: visits in the wrong
-    /// order cost less.
-    #[inline(always)]
-    fn push<W: Float<One = f32>>(&mut self, children: W, enter: W, met: W::Mask) {
+    fn push<W: Float<One = f32>>(&mut self, first: u32, enter: W, met: W::Mask) -> usize {
         // There is always room (`is_shallow`); with this explicit bound nothing below is checked.
-        let count = self.count.min(PLACES - MOST_LANES - 1);
-        self.count = children.pack_least_last(enter, met, [&mut self.children, &mut self.distances], count);
+        let count = self.count.min(most_levels(W::LANES) - 1);
+        enter.store(&mut self.distances[count * W::LANES..][..W::LANES]);
+        let nearest = nearest(enter, met);
+        let which = met.bits() & !(1 << nearest);
+        self.levels[count] = Waiting { first, which };
+        self.count = count + usize::from(which != 0);
+        nearest
     }
 
-    /// Continues with the last child whose box begins no farther than `limit`. At exactly the nearest distance so far,
-    /// a lower number may win the tie.
+    /// Removes the nearest waiting child of the last node that has one, and returns it. Its box begins no farther than
+    /// `limit`: at exactly the nearest distance so far, a lower number may win the tie.
     #[inline(always)]
-    fn pop(&mut self, limit: f32) {
-        while self.count > 0 {
-            self.count -= 1;
-            if self.distances[self.count] <= limit {
-                self.next = self.children[self.count].to_bits();
-                return;
+    fn pop<W: Float<One = f32>>(&mut self, nodes: &[f32], limit: f32) -> Option<u32> {
+        while let Some(last) = self.count.checked_sub(1) {
+            let last = last.min(most_levels(W::LANES) - 1);
+            let Waiting { first, which } = self.levels[last];
+            let enter = W::load(&self.distances[last * W::LANES..][..W::LANES]);
+            let is_near = enter.le(W::splat(limit.into())) & W::Mask::from_bits(which);
+            let nearest = nearest(enter, is_near);
+            let which = is_near.bits();
+            let others = which & !(1 << nearest);
+            self.levels[last].which = others;
+            self.count = last + usize::from(others != 0);
+            if which != 0 {
+                return Some(nodes[first as usize + nearest].to_bits());
             }
         }
-        self.next = NOTHING;
+        None
     }
+}
+
+/// The first lane with the least of some numbers; any lane if there are none.
+#[inline(always)]
+fn nearest<W: Float<One = f32>>(distances: W, which: W::Mask) -> usize {
+    let distances = W::select(which, distances, W::splat(f64::INFINITY));
+    distances.equal(W::splat(distances.least())).bits().trailing_zeros() as usize % W::LANES
 }
 
 #[cfg(test)]
@@ -309,7 +385,7 @@ mod tests {
     use crate::lanes::rays::Rays;
     use crate::simd::{Precision, Sizes, Work, levels, on_level, sizes_of};
     use pathmark_tracer::kernel::Counts;
-    use pathmark_tracer::math::{Ray, Vec3};
+    use pathmark_tracer::math::{Ray, Real, Vec3};
     use pathmark_tracer::scene::{Primitive, Primitives, Sphere};
 
     const DEPTH: usize = 200;
@@ -342,6 +418,37 @@ mod tests {
         (spheres, nodes)
     }
 
+    struct NearestOf;
+
+    impl Work for NearestOf {
+        type Output = usize;
+
+        #[inline(always)]
+        fn run<V: Float>(self) -> usize {
+            let lanes = V::Single::LANES;
+            let mut compared = 0;
+            for which in (1..1_u32 << lanes).step_by(if lanes > 8 { 47 } else { 1 }) {
+                for shift in 0..5 {
+                    let distances: [f32; MOST_LANES] = std::array::from_fn(|lane| ((7 * lane + shift) % 5) as f32);
+                    let mask = <V::Single as Real>::Mask::from_bits(which);
+                    let met = (0..lanes).filter(|lane| which >> lane & 1 == 1);
+                    let expected = met.min_by(|a, b| distances[*a].total_cmp(&distances[*b]));
+                    assert_eq!(Some(nearest(V::Single::load(&distances), mask)), expected, "{which:b}, {distances:?}");
+                    compared += 1;
+                }
+            }
+            compared
+        }
+    }
+
+    /// Among equally near children the first one counts.
+    #[test]
+    fn the_nearest_lane_is_found() {
+        for (level, precision) in levels().flat_map(|level| Precision::ALL.map(|precision| (level, precision))) {
+            assert!(on_level(level, precision, NearestOf) > 10, "{} {precision:?}", level.name());
+        }
+    }
+
     struct Along<'a>(&'a Wide);
 
     impl Work for Along<'_> {
@@ -367,9 +474,9 @@ mod tests {
                 let Sizes { register, single: width, .. } = sizes_of(level, precision);
                 let (spheres, nodes) = row(width);
                 let order: Vec<u32> = (0..spheres.len() as u32).collect();
-                assert!(is_shallow(&CollapsedBvh::new(nodes[DEPTH - 1..].to_vec(), order.clone())));
+                assert!(is_shallow(&CollapsedBvh::new(nodes[DEPTH - 1..].to_vec(), order.clone()), width));
                 let collapsed = CollapsedBvh::new(nodes, order);
-                assert!(spheres.len() > MOST_WAITING + width && !is_shallow(&collapsed));
+                assert!(!is_shallow(&collapsed, width));
                 let bounds = spheres.iter().filter_map(Primitive::bounds);
                 let scale = Scale::of(&bounds.fold(Bounds::EMPTY, |all, own| all.and(&own)));
                 let primitives = Primitives { spheres, ..Primitives::default() };

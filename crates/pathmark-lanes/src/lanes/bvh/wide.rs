@@ -41,7 +41,7 @@ impl Search {
         scale: Scale,
         builder: &mut BlocksBuilder<'_>,
     ) -> Self {
-        match collapsed.filter(|collapsed| is_shallow(collapsed)) {
+        match collapsed.filter(|collapsed| is_shallow(collapsed, width)) {
             Some(collapsed) => Self::Tree(Tree::of(collapsed, width, scale, builder)),
             None => Self::Linear(builder.all()),
         }

@@ -31,10 +31,6 @@ register! {
                 op!(x86::_mm256_permutevar8x32_ps(Self::load(from).0, x86::_mm256_loadu_si256(order.cast())));
             Self::select(mask, Self(next), self)
         }
-        fn pack(self, mask: Mask8, to: &mut [f32]) {
-            let order = PACKED[mask.bits() as usize & 255].as_ptr();
-            Self(op!(x86::_mm256_permutevar8x32_ps(self.0, x86::_mm256_loadu_si256(order.cast())))).store(to);
-        }
         fn least(self) -> f64 {
             let halves = op!(x86::_mm_min_ps(x86::_mm256_castps256_ps128(self.0), x86::_mm256_extractf128_ps::<1>(self.0)));
             let pairs = op!(x86::_mm_min_ps(halves, x86::_mm_movehl_ps(halves, halves)));
@@ -102,23 +98,14 @@ fn pair(table: &Table, lower: i32, upper: i32) -> x86::__m256 {
     })
 }
 
-/// For each mask, its lanes in order.
-static PACKED: [[i32; 8]; 256] = orders(true);
-
 /// For each mask, the indices of the numbers for its lanes: 0 for the first lane in the mask, and so on.
-static SPREAD: [[i32; 8]; 256] = orders(false);
-
-const fn orders(are_packed: bool) -> [[i32; 8]; 256] {
+static SPREAD: [[i32; 8]; 256] = {
     let (mut table, mut mask) = ([[0; 8]; 256], 0);
     while mask < 256 {
         let (mut lane, mut next) = (0, 0);
         while lane < 8 {
             if mask >> lane & 1 == 1 {
-                if are_packed {
-                    table[mask][next] = lane as i32;
-                } else {
-                    table[mask][lane] = next as i32;
-                }
+                table[mask][lane] = next;
                 next += 1;
             }
             lane += 1;
@@ -126,4 +113,4 @@ const fn orders(are_packed: bool) -> [[i32; 8]; 256] {
         mask += 1;
     }
     table
-}
+};

@@ -29,10 +29,6 @@ register! {
         fn fill(self, mask: Mask16, from: &[f32]) -> Self {
             Self(op!(x86::_mm512_mask_expand_ps(self.0, mask.0, Self::load(from).0)))
         }
-        fn pack(self, mask: Mask16, to: &mut [f32]) {
-            // Stores the whole register: some processors take a hundred cycles to compress into memory.
-            Self(op!(x86::_mm512_maskz_compress_ps(mask.0, self.0))).store(to);
-        }
         fn set_lane(&mut self, lane: usize, value: f64) {
             self.0 = op!(x86::_mm512_mask_mov_ps(self.0, 1 << lane, x86::_mm512_set1_ps(value as f32)));
         }

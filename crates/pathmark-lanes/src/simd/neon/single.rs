@@ -33,19 +33,6 @@ register! {
         fn fill(self, mask: Mask4, from: &[f32]) -> Self {
             Self::select(mask, Self::load(from).in_order(&SPREAD[mask.bits() as usize & 15]), self)
         }
-        fn pack_least_last(self, keys: Self, mask: Mask4, [to, keys_to]: [&mut [f32]; 2], count: usize) -> usize {
-            let least = Self::select(mask, keys, Self::splat(f64::INFINITY)).least();
-            let is_least = mask & keys.equal(Self::splat(least));
-            let both = op!({
-                let of_mask = arm::vandq_u32(mask.0, arm::vld1q_u32([1, 2, 4, 8].as_ptr()));
-                let of_least = arm::vandq_u32(is_least.0, arm::vld1q_u32([16, 32, 64, 128].as_ptr()));
-                arm::vaddvq_u32(arm::vorrq_u32(of_mask, of_least)) as usize & 255
-            });
-            let order = &LEAST_LAST[both];
-            self.in_order(order).store(&mut to[count..]);
-            keys.in_order(order).store(&mut keys_to[count..]);
-            count + usize::from(COUNTS[both])
-        }
         // One instruction each, for numbers of which only the first may be NaN.
         fn at_least(self, other: Self) -> Self {
             Self(op!(arm::vmaxnmq_f32(self.0, other.0)))
@@ -130,43 +117,6 @@ static SPREAD: [[u8; 16]; 16] = {
             lane += 1;
         }
         mask += 1;
-    }
-    table
-};
-
-/// For each mask in the lower four bits and the lanes of the least numbers in the upper four, the bytes of the mask's
-/// lanes in order, after the first of the least and the last have changed places.
-static LEAST_LAST: [[u8; 16]; 256] = {
-    let (mut table, mut both) = ([[0; 16]; 256], 0);
-    while both < 256 {
-        let (mut lanes, mut count, mut lane, mut least) = ([0; 4], 0, 0, 0);
-        while lane < 4 {
-            if both >> lane & 1 == 1 {
-                lanes[count] = lane;
-                count += 1;
-            }
-            lane += 1;
-        }
-        while least < count && both >> (4 + lanes[least]) & 1 == 0 {
-            least += 1;
-        }
-        let mut place = 0;
-        while place < count {
-            let is_exchanged = least < count && (place == least || place + 1 == count);
-            put(&mut table[both], place, lanes[if is_exchanged { least + count - 1 - place } else { place }]);
-            place += 1;
-        }
-        both += 1;
-    }
-    table
-};
-
-/// The number of lanes of each mask in [`LEAST_LAST`].
-static COUNTS: [u8; 256] = {
-    let (mut table, mut both) = ([0; 256], 0_usize);
-    while both < 256 {
-        table[both] = (both & 15).count_ones() as u8;
-        both += 1;
     }
     table
 };
