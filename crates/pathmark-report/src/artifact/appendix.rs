@@ -3,7 +3,7 @@
 use super::again::{Again, Costs};
 use super::citation::Citation;
 use super::metadata::METADATA;
-use super::recipes::Program;
+use super::recipes::{Program, installing};
 use super::{CLAIMS, CONTAINER, FIRST, LEDGER, MEASURE, ROWS, VERDICTS};
 use crate::claims::{Answer, PlainRows, totals};
 use crate::experiment::RunFile;
@@ -236,7 +236,7 @@ impl Appendix<'_> {
         format!(
             "## Installation\n\nInstall {name} from its sources{from}{commit} by `{}`. The scripts call it `{command}`.\n\n\
              Or build the container by `{}`: `{CONTAINER}` names the commit and the compiler. It has not been built as a whole.{where_from}",
-            self.program.installing(".", self.features),
+            installing(".", self.features),
             self.program.building()
         )
     }

@@ -19,6 +19,13 @@ pub(super) struct Program {
     pub(super) address: Option<&'static str>,
 }
 
+/// The command that installs a program from its sources.
+pub(super) fn installing(sources: &str, features: &BTreeSet<String>) -> String {
+    let features = features.iter().map(String::as_str).collect::<Vec<&str>>().join(",");
+    let features = if features.is_empty() { features } else { format!(" --features {features}") };
+    format!("cargo install --locked --path {sources}{features}")
+}
+
 impl Program {
     /// `cargo install` gives Pathmark's own program its name, whatever that of this executable is.
     pub(super) fn of(lab: &Lab) -> Self {
@@ -68,13 +75,6 @@ impl Program {
             self.called(["claims"]),
             ["--ledger", LEDGER, "--report", &answer.report.report].map(shell::quoted).join(" "),
         ))
-    }
-
-    /// The command that installs it from its sources.
-    pub(super) fn installing(&self, sources: &str, features: &BTreeSet<String>) -> String {
-        let features = features.iter().map(String::as_str).collect::<Vec<&str>>().join(",");
-        let features = if features.is_empty() { features } else { format!(" --features {features}") };
-        format!("cargo install --locked --path {sources}{features}")
     }
 
     /// The command that builds the container.
@@ -127,7 +127,7 @@ impl Program {
              COPY . /artifact\nWORKDIR /artifact\nCMD [\"sh\", \"{FIRST}\"]\n",
             self.building(),
             self.command,
-            self.installing("/sources", features),
+            installing("/sources", features),
         )
     }
 }

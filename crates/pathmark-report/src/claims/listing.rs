@@ -127,12 +127,10 @@ impl Listing {
 
     /// The verdicts of an artifact, which keeps no name of a folder of ledgers.
     pub fn of_artifact(ledgers: &[Report]) -> Self {
+        let names: Vec<&str> = ledgers.iter().map(|ledger| ledger.report.as_str()).collect();
         let heading = match ledgers {
             [one] => format!("# {}", one.title),
-            _ => {
-                let names: Vec<&str> = ledgers.iter().map(|ledger| ledger.report.as_str()).collect();
-                format!("# The claims of {}", names.join(", "))
-            }
+            _ => format!("# The claims of {}", names.join(", ")),
         };
         Self { stem: FOLDER.to_string(), heading }
     }

@@ -183,7 +183,6 @@ mod tests {
             "data-verdict=\"cannot tell\"",
             "1 more seed",
             "data-verdict=\"not measured\"",
-            "no such kernel",
             "data-verdict=\"other hardware\"",
             "data-verdict=\"reproduced\"",
             "The machines side by side",
