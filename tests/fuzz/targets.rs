@@ -46,7 +46,7 @@ const TARGET: Target = Target {
     more: Vec::new,
     words: &[],
     cut: true,
-    mutations: 2000,
+    mutations: 1000,
 };
 
 /// All targets.
@@ -66,7 +66,7 @@ pub(crate) const TARGETS: &[Target] = &[
         read: mesh,
         words: MESH_WORDS,
         // These take ten times as long as most.
-        mutations: 1500,
+        mutations: 600,
         ..TARGET
     },
     Target { name: "ply", file: "thing.ply", prepare: scene_with_a_ply_mesh, read: mesh, words: PLY_WORDS, ..TARGET },
@@ -77,7 +77,7 @@ pub(crate) const TARGETS: &[Target] = &[
         // A large matrix has many cells, so it is known to take long.
         more: || texts(experiments(), 1300, "spheres"),
         words: EXPERIMENT_WORDS,
-        mutations: 1200,
+        mutations: 600,
         ..TARGET
     },
     Target {
@@ -148,7 +148,7 @@ pub(crate) const TARGETS: &[Target] = &[
         more: rows,
         words: CSV_WORDS,
         cut: false,
-        mutations: 300,
+        mutations: 120,
         ..TARGET
     },
     Target {
@@ -158,7 +158,7 @@ pub(crate) const TARGETS: &[Target] = &[
         read: report,
         words: CSV_WORDS,
         cut: false,
-        mutations: 300,
+        mutations: 120,
         ..TARGET
     },
 ];

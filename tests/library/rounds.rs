@@ -188,7 +188,7 @@ fn run_adaptive(setup: &Setup) -> Result<Outcome> {
 /// seeds its mean equals the mean with equally many samples everywhere: z-test on one pixel, two-sided, at 1e-3.
 #[test]
 fn adaptive_sampling_is_unbiased() {
-    const SEEDS: u64 = 1000;
+    const SEEDS: u64 = 500;
     // A lamp that paths seldom hit, seen from inside a closed ball.
     let ball = |center, radius, albedo: &str, emission| Ball {
         center,

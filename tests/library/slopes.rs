@@ -116,7 +116,7 @@ fn every_scene() {
     for (name, _) in SCENES {
         let name = if *name == "spheres" { "spheres:100" } else { name };
         let spps = vec![4, 8, 16, 32];
-        let curves = Curves { scene: Arc::new(load(name).unwrap()), estimator: "mis", size: (16, 12), spps };
+        let curves = Curves { scene: Arc::new(load(name).unwrap()), estimator: "mis", size: (12, 9), spps };
         // A scene in which nothing is random has no slope.
         let Some(law) = curves.by_spread(12, level) else {
             println!("{name}: no slope");

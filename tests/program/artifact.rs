@@ -135,7 +135,10 @@ fn the_appendix_tells_what_each_claim_takes() {
         "1 confirmed, 1 refuted, 1 not answered",
         "### 2. Claim 2.\n\n* **Verdict:** confirmed\n* **Measured:** 4; predicted: 4\n",
         "`pathmark artifact . --check --claim 2`",
-        "`pathmark replicate rows/out/tiny --out ../again`; about ",
+        "`pathmark replicate rows/out/tiny --out ../again`; ",
+        " for the experiment\n",
+        "* **Time to prepare:** not measured; ",
+        " s, estimated by a pilot on ",
         "No rows here answer these claims: 1.",
         "sh first-claim.sh",
         "sh measure-first-claim.sh ../again",
@@ -150,9 +153,71 @@ fn the_appendix_tells_what_each_claim_takes() {
     assert!(container.contains(&format!("ARG RUST={rust}\n")), "{container}");
     assert!(container.contains("FROM docker.io/library/debian:13.8-slim\n"), "{container}");
     assert!(container.ends_with("CMD [\"sh\", \"first-claim.sh\"]\n"), "{container}");
+    // No address that does not exist is cloned.
+    assert!(container.contains("has not built it") && !container.contains(".invalid"), "{container}");
+    assert!(!readme.contains(".invalid") && !read("ro-crate-metadata.json").contains(".invalid"), "{readme}");
     assert!(read("CITATION.cff").contains("orcid: \"https://orcid.org/0000-0002-1825-0097\""));
     assert!(read("CLAIMS.md").contains("(rows/out/tiny/records.csv)"), "{}", read("CLAIMS.md"));
     assert!(read("claims.csv").contains(",rows/out/tiny/records.csv,"), "{}", read("claims.csv"));
+}
+
+/// An executable that was renamed writes the name that `cargo install` gives.
+#[test]
+fn scripts_call_the_program_by_its_installed_name() {
+    let folder = with_rows(TINY);
+    // Not in memory, where programs may not be run.
+    let programs = tempfile::tempdir().unwrap();
+    let renamed = programs.path().join("pm");
+    fs::copy(assert_cmd::cargo::cargo_bin!("pathmark"), &renamed).unwrap();
+    let output = Command::new(&renamed).args(MAKE).current_dir(folder.path()).output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    let archive = folder.path().join("made");
+    let first = script(&archive, "first-claim.sh", &[]);
+    assert!(first.status.success(), "{}", said(&first));
+    for name in ["README.md", "Containerfile", "first-claim.sh", "measure-first-claim.sh"] {
+        let text = fs::read_to_string(archive.join(name)).unwrap();
+        assert!(!text.split(|char: char| !char.is_alphanumeric()).any(|word| word == "pm"), "{name}: {text}");
+    }
+}
+
+/// A ledger on the rows of another program: the appendix tells its command and costs, and nothing of experiments.
+#[test]
+fn rows_of_other_programs_have_their_own_appendix() {
+    let folder = in_memory();
+    fs::create_dir(folder.path().join("out")).unwrap();
+    let rows = |unit: f64| (0..4).map(move |run| format!("quick,{run},{unit}\n")).collect::<String>();
+    fs::write(folder.path().join("out/times.csv"), format!("program,repetition,spp\n{}", rows(4.0))).unwrap();
+    let table = "[[table]]\nname = \"tiny\"\nfile = \"times.csv\"\nsettings = [\"program\"]\nvalues = [\"spp\"]\n";
+    let costs = "command = \"sh measure.sh\"\nseconds = 400.0\nbytes = 2000000\nmachine = \"a Cray-1\"\n";
+    let told = |costs: &str| {
+        let text = ledger().replace("about = \"Invented.\"\n", &format!("about = \"Invented.\"\n{table}{costs}"));
+        fs::write(folder.path().join("paper.toml"), text).unwrap();
+        let _ = fs::remove_dir_all(folder.path().join("made"));
+        finish(pathmark(folder.path(), &MAKE)).with_code(0);
+        let checked = finish(pathmark(folder.path(), &["artifact", "made", "--check"])).with_code(0).out;
+        assert!(checked.contains("rows of 1 table of another program, all verdicts"), "{checked}");
+        assert!(!folder.path().join("made/measure-first-claim.sh").exists());
+        fs::read_to_string(folder.path().join("made/README.md")).unwrap()
+    };
+    let readme = told(costs);
+    for told in [
+        "Measured rows of 1 table of another program, ",
+        "* **Hardware:** a Cray-1\n",
+        "about 2.0 MB for new rows\n",
+        "* **Time to measure all rows again:** about 400 s for rows of other programs, as the ledger tells\n",
+        "* **Measure again:** `sh measure.sh` writes `times.csv`; 400 s, 2.0 MB, on a Cray-1, as the ledger tells\n",
+        "## Rows of other programs\n\n* `rows/out/times.csv`: `sh measure.sh` writes ",
+    ] {
+        assert!(readme.contains(told), "{told}\n{readme}");
+    }
+    for wrong in
+        ["pilot", "0 experiment", "report.html", "experiment.toml", "measures the rows again", "## Experiments"]
+    {
+        assert!(!readme.contains(wrong), "{wrong}\n{readme}");
+    }
+    let readme = told("");
+    assert!(readme.contains("rows again:** unknown for 1 table of other programs\n"), "{readme}");
+    assert!(readme.contains("another program wrote `times.csv`; the ledger names no command"), "{readme}");
 }
 
 /// Packed rows are taken as they are, a missing page is drawn, scene files come along, and missing names are named so.
@@ -243,6 +308,14 @@ const FAULTS: &[Fault] = &[
         &["rows/link", "neither a file nor a folder"],
     ),
     (
+        "a list that is a link",
+        |archive| {
+            fs::remove_file(archive.join("ro-crate-metadata.json")).unwrap();
+            symlink("/etc/passwd", archive.join("ro-crate-metadata.json")).unwrap();
+        },
+        &["ro-crate-metadata.json", "neither a file nor a folder"],
+    ),
+    (
         "broken JSON",
         |archive| {
             let path = archive.join("ro-crate-metadata.json");
@@ -291,19 +364,100 @@ const FAULTS: &[Fault] = &[
         |archive| edit(archive, "claims.csv", |text| format!("{text}7{}\n", &text.lines().last().unwrap()[1..])),
         &["claims.csv:5:1: claim = 7: is not in the ledger"],
     ),
+    (
+        "a bound that the ledger does not have",
+        |archive| edit(archive, "claims.csv", |text| text.replacen("at least 5", "at least 4", 1)),
+        &["claims.csv:4:1: predicted = at least 4: claim 3: the rows give at least 5"],
+    ),
+    (
+        "another rule",
+        |archive| edit(archive, "claims.csv", |text| text.replacen("repetition", "seed", 1)),
+        &["claims.csv:3:1: rule = "],
+    ),
+    (
+        "other runs",
+        |archive| edit(archive, "claims.csv", |text| text.replacen("in 1 of 1 run", "in 2 of 2 runs", 1)),
+        &["claims.csv:3:1: runs = in 2 of 2 runs"],
+    ),
+    (
+        "other rows",
+        |archive| edit(archive, "claims.csv", |text| text.replacen("rows/out/tiny/", "rows/in/tiny/", 1)),
+        &["claims.csv:3:1: rows = rows/in/tiny/records.csv"],
+    ),
+    (
+        "another sentence",
+        |archive| edit(archive, "claims.csv", |text| text.replacen("Claim 1.", "Claim one.", 1)),
+        &["claims.csv:2:1: says = Claim one.: claim 1: "],
+    ),
+    (
+        "a text with another verdict",
+        |archive| edit(archive, "CLAIMS.md", |text| text.replacen("**Refuted**", "**Confirmed**", 1)),
+        &["CLAIMS.md:", "line = **Confirmed**, in 1 of 1 run: ", "writes: **Refuted**"],
+    ),
+    (
+        "a text that ends early",
+        |archive| edit(archive, "CLAIMS.md", |text| text.lines().next().unwrap().to_string()),
+        &["CLAIMS.md:2:1: line: "],
+    ),
+    (
+        "no version of RO-Crate",
+        |archive| strip(archive, "ro-crate-metadata.json", "conformsTo"),
+        &["ro-crate-metadata.json:", ": conformsTo: "],
+    ),
+    ("no date", |archive| strip(archive, "./", "datePublished"), &["ro-crate-metadata.json:", ": datePublished: "]),
+    ("no parts", |archive| strip(archive, "./", "hasPart"), &["ro-crate-metadata.json:", ": hasPart: "]),
+    (
+        "a table outside",
+        |archive| ask_for(archive, "/etc/passwd"),
+        &["ledger/paper.toml:6:9: file = /etc/passwd: leads out of the archive", "without `..`"],
+    ),
+    (
+        "a table above",
+        |archive| ask_for(archive, "../../../secret.csv"),
+        &["ledger/paper.toml:6:9: file = ../../../secret.csv: leads out of the archive"],
+    ),
+    (
+        "an experiment above",
+        |archive| edit(archive, "ledger/paper.toml", |text| text.replace("\"tiny\"", "\"../../../out/tiny\"")),
+        &["ledger/paper.toml:", "experiment = ../../../out/tiny: leads out of the archive"],
+    ),
+    (
+        "an experiment outside",
+        |archive| edit(archive, "ledger/paper.toml", |text| text.replacen("\"tiny\"", "\"/etc\"", 1)),
+        &["ledger/paper.toml:", "experiment = /etc: leads out of the archive"],
+    ),
 ];
+
+/// Makes the claims ask for a table in this file.
+fn ask_for(archive: &Path, file: &str) {
+    let table = format!("[[table]]\nname = \"tiny\"\nfile = \"{file}\"\nsettings = [\"a\"]\nvalues = [\"spp\"]\n");
+    edit(archive, "ledger/paper.toml", |text| text.replacen("\n[[claim]]", &format!("{table}\n[[claim]]"), 1));
+}
+
+/// Removes a property of an entity of the list.
+fn strip(archive: &Path, id: &str, key: &str) {
+    let path = archive.join("ro-crate-metadata.json");
+    let mut list: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+    let entities = list["@graph"].as_array_mut().unwrap();
+    let own = entities.iter_mut().find(|entity| entity["@id"] == id).unwrap();
+    assert!(own.as_object_mut().unwrap().remove(key).is_some(), "{key}");
+    fs::write(path, format!("{list:#}\n")).unwrap();
+}
 
 /// Every fault is told with file and field, and with the line where there is one.
 #[test]
 fn a_bad_archive_is_told_by_its_fault() {
     let folder = with_rows(TINY);
     finish(pathmark(folder.path(), &MAKE)).with_code(0);
+    fs::write(folder.path().join("secret.csv"), "secrecy,repetition\n").unwrap();
     for (name, damage, told) in FAULTS {
         let archive = folder.path().join("bad");
         unpack(&folder.path().join("made"), &archive);
         damage(&archive);
         let error = finish(pathmark(folder.path(), &["artifact", "bad", "--check"])).with_code(2).err;
         assert!(told.iter().all(|told| error.contains(told)), "{name}: {error}");
+        // Nothing of a file outside is told.
+        assert!(!error.contains("root:") && !error.contains("secrecy"), "{name}: {error}");
         fs::remove_dir_all(archive).unwrap();
     }
     let error = finish(pathmark(folder.path(), &["artifact", "made", "--check", "--claim", "9"])).with_code(2).err;

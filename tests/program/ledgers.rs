@@ -5,7 +5,7 @@ use crate::program::{finish, in_memory, pathmark};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Output};
 
 fn example(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/ledgers").join(name)
@@ -21,9 +21,22 @@ fn verdicts(folder: &Path, ledger: &Path) -> Vec<Value> {
 fn hyperfine() -> Value {
     let result = |program: &str, seconds: f64| {
         let times: Vec<f64> = (0..6).map(|run| seconds * (1.0 + 0.01 * f64::from(run))).collect();
-        json!({ "command": format!("{program} 100000"), "mean": seconds, "times": times, "exit_codes": [0], "parameters": { "n": "100000" } })
+        json!({ "command": format!("{program} 100000"), "mean": seconds, "times": times, "exit_codes": vec![0; 6], "parameters": { "n": "100000" } })
     };
     json!({ "results": [result("quick", 0.01), result("bubble", 1.1)] })
+}
+
+fn has_python() -> bool {
+    let there = Command::new("python3").arg("--version").output().is_ok_and(|output| output.status.success());
+    if !there {
+        eprintln!("python3 is missing: the converters are not run");
+    }
+    there
+}
+
+/// Runs a converter in a folder.
+fn convert(folder: &Path, script: &str, input: &str) -> Output {
+    Command::new("python3").arg(example(script)).arg(input).current_dir(folder).output().unwrap()
 }
 
 /// Samples of a function that takes 2 ns per element, as criterion leaves them.
@@ -43,8 +56,7 @@ fn criterion(folder: &Path) {
 /// Rows of hyperfine and criterion give verdicts: 1.1 s over 10 ms is 110, and the times are linear.
 #[test]
 fn rows_of_other_harnesses_are_judged() {
-    if !Command::new("python3").arg("--version").output().is_ok_and(|output| output.status.success()) {
-        eprintln!("python3 is missing: the converters are not run");
+    if !has_python() {
         return;
     }
     let folder = in_memory();
@@ -53,21 +65,77 @@ fn rows_of_other_harnesses_are_judged() {
     for (script, input, rows) in
         [("from_hyperfine.py", "times.json", "commands.csv"), ("from_criterion.py", "criterion", "functions.csv")]
     {
-        let output =
-            Command::new("python3").arg(example(script)).arg(input).current_dir(folder.path()).output().unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let output = convert(folder.path(), script, input);
+        assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
         fs::write(folder.path().join(rows), output.stdout).unwrap();
     }
     let told = verdicts(folder.path(), &example("sorting.toml"));
     let of = |key: &str| told.iter().map(|row| row[key].as_str().unwrap()).collect::<Vec<_>>();
     assert_eq!(of("verdict"), ["confirmed", "confirmed"], "{told:?}");
     assert!(of("measured")[0].starts_with("110"), "{told:?}");
+    // The rows tell their time, so that they are known to be younger than a bound of 2001.
+    let text = fs::read_to_string(example("sorting.toml")).unwrap();
+    let old = text.replace("2026-11-28T05:00:00Z", "2001-01-01T00:00:00Z");
+    fs::write(folder.path().join("old.toml"), old).unwrap();
+    let strict = ["claims", ".", "--ledger", "old.toml", "--strict"];
+    let told = finish(pathmark(folder.path(), &strict)).with_code(0).out;
+    assert_eq!(told.matches("bound older than its rows").count(), 2, "{told}");
     // A wrong row is told with file, line, field and value.
     let path = folder.path().join("commands.csv");
     fs::write(&path, fs::read_to_string(&path).unwrap().replacen(",0,0.01", ",0,fast", 1)).unwrap();
     let ledger = example("sorting.toml").display().to_string();
     let error = finish(pathmark(folder.path(), &["claims", ".", "--ledger", &ledger])).with_code(2).err;
     assert!(error.contains("commands.csv:2:") && error.contains("seconds = fast"), "{error}");
+}
+
+/// Runs that failed have no seconds: one of 10 s would change the ratio. The last one was ended by a signal.
+#[test]
+fn failed_runs_of_hyperfine_are_not_measured() {
+    if !has_python() {
+        return;
+    }
+    let folder = in_memory();
+    let mut results = hyperfine();
+    let own = &mut results["results"][0];
+    own["exit_codes"] = json!([0, 3, 0, 0, 0, Value::Null]);
+    (own["times"][1], own["times"][5]) = (json!(10.0), json!(1e-6));
+    let write = |results: &Value| fs::write(folder.path().join("times.json"), results.to_string()).unwrap();
+    write(&results);
+    let output = convert(folder.path(), "from_hyperfine.py", "times.json");
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(told, "times.json: quick 100000: 2 of 6 runs failed, so their seconds are empty\n");
+    fs::write(folder.path().join("commands.csv"), output.stdout).unwrap();
+    let told = verdicts(folder.path(), &example("sorting.toml"));
+    assert!(told[0]["verdict"] == "confirmed" && told[0]["measured"].as_str().unwrap().starts_with("110"), "{told:?}");
+    assert!(told[0]["rule"].as_str().unwrap().contains("4 repetitions"), "{told:?}");
+    // Codes of other runs than the times are refused.
+    results["results"][0]["exit_codes"] = json!([0]);
+    write(&results);
+    let output = convert(folder.path(), "from_hyperfine.py", "times.json");
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!output.status.success() && told.contains("quick 100000: 6 times and 1 exit_codes"), "{told}");
+}
+
+/// The plan of a ledger on other programs has the commands that it tells.
+#[test]
+fn a_plan_tells_the_commands_of_other_programs() {
+    let folder = in_memory();
+    let ledger = example("sorting.toml").display().to_string();
+    let plan = |more: &[&str]| {
+        let all = [&["claims", ".", "--ledger", &ledger, "--plan"], more].concat();
+        finish(pathmark(folder.path(), &all)).with_code(0).out
+    };
+    let told: Vec<Value> = serde_json::from_str(&plan(&["--json"])).unwrap();
+    assert!(told[0]["command"].as_str().unwrap().starts_with("hyperfine "), "{told:?}");
+    assert_eq!((&told[0]["seconds"], &told[0]["bytes"]), (&json!(40.0), &json!(2000)), "{told:?}");
+    assert_eq!((&told[0]["machine"], &told[1]["command"]), (&json!("an invented machine"), &json!("cargo bench")));
+    let text = plan(&[]);
+    assert!(
+        text.contains("  # 40 s, 0.0 MB, on an invented machine, rows of another program, in commands.csv\n"),
+        "{text}"
+    );
+    assert!(text.ends_with("2 tables of other programs, as the ledger tells it: 40 s, 1 without a time\n"), "{text}");
+    assert!(!text.contains("0 experiments"), "{text}");
 }
 
 /// A sentence of a library's README, by rows of `bursts`.
@@ -88,15 +156,19 @@ fn rows_of_bursts_are_a_table_like_any_other() {
     assert_eq!(told[1]["verdict"], "confirmed", "{told:?}");
 }
 
-/// The fifth report is judged by committed rows.
+/// The fifth report is judged by committed rows that are younger than the ledger, with the verdicts that its page tells.
 #[test]
 fn a_report_from_outside_is_judged_by_the_committed_rows() {
-    let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/reports");
-    let told = verdicts(&results, &example("kth.toml"));
-    assert!(
-        told.iter().all(|row| ["confirmed", "refuted", "open"].iter().any(|name| row["verdict"] == *name)),
-        "{told:?}"
-    );
+    let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("results");
+    let ledger = example("kth.toml").display().to_string();
+    let command = ["claims", "reports-2", "reports-3", "--ledger", &ledger, "--strict", "--json"];
+    let told = finish(pathmark(&results, &command)).with_code(0).out;
+    let told: Vec<Value> = serde_json::from_str(&told).unwrap();
+    assert_eq!((&told[0]["verdict"], &told[1]["verdict"]), (&json!("refuted"), &json!("open")), "{told:?}");
+    let page = fs::read_to_string(example("README.md")).unwrap();
+    for row in &told {
+        assert!(page.contains(row["measured"].as_str().unwrap()), "{row:?}");
+    }
 }
 
 /// Numbers of claims are unique over the ledgers of a folder, and a plan names a command for each claim.

@@ -163,6 +163,26 @@ fn cells_for_other_hardware_are_named() {
     assert!(page.contains(&format!("Other hardware: {why} (")) && page.contains(">1000</td>"), "{page}");
 }
 
+/// Where no statement could be judged, the exit code says so.
+#[test]
+fn rows_for_other_hardware_alone_are_no_success() {
+    let folder = in_memory();
+    let more = available_threads() + 1;
+    write_tiny(folder.path(), &PAIRED.replace("threads = [1]", &format!("threads = [{more}]")));
+    finish(pathmark(folder.path(), &["run", "tiny.toml", "--out", "theirs"])).with_code(0);
+    let machine = folder.path().join("theirs/tiny/machine.toml");
+    let text = fs::read_to_string(&machine).unwrap();
+    let own = format!("\nprocessors = {}\n", available_threads());
+    fs::write(&machine, text.replace(&own, "\nprocessors = 1000\n")).unwrap();
+    let told = finish(pathmark(folder.path(), &["replicate", "theirs"])).with_code(1);
+    assert!(told.err.contains("no statement could be judged"), "{}", told.err);
+    assert!(
+        told.out.contains("0 reproduced, 1 other hardware, 0 not measured, 0 cannot tell, 0 not reproduced"),
+        "{}",
+        told.out
+    );
+}
+
 #[test]
 fn wrong_folders_and_margins_are_refused() {
     let folder = in_memory();

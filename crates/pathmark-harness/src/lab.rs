@@ -97,6 +97,11 @@ impl Lab {
         [name, version]
     }
 
+    /// Whether the program adds nothing to Pathmark, not even a name: whoever installs Pathmark has it.
+    pub fn is_pathmark(&self) -> bool {
+        self.name.is_none() && self.version.is_none() && self.added.is_empty()
+    }
+
     #[must_use]
     #[track_caller]
     pub fn strategy(mut self, entry: Strategy) -> Self {
@@ -288,6 +293,8 @@ mod tests {
         assert_eq!(program(Lab::new().name("mypool").version("0.3.1")), format!("mypool 0.3.1 ({pathmark})"));
         assert_eq!(program(Lab::new().name("mypool")), format!("mypool ({pathmark})"));
         assert_eq!(program(Lab::new().name("pathmark")), pathmark.to_lowercase());
+        assert!(Lab::new().is_pathmark() && !Lab::new().name("mypool").is_pathmark());
+        assert!(!Lab::new().claims("mine", "").is_pathmark());
         // The name of the test program, which is not Pathmark itself.
         assert_eq!(program(Lab::new()), format!("{} ({pathmark})", shell::executable_name()));
     }

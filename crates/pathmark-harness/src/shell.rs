@@ -10,7 +10,12 @@ pub fn executable_name() -> String {
 
 /// The command line of this program with these arguments.
 pub fn command<S: AsRef<str>>(arguments: impl IntoIterator<Item = S>) -> String {
-    let program = quoted(&executable_name());
+    command_of(&executable_name(), arguments)
+}
+
+/// The command line of another program, or of this one by another name.
+pub fn command_of<S: AsRef<str>>(program: &str, arguments: impl IntoIterator<Item = S>) -> String {
+    let program = quoted(program);
     arguments.into_iter().fold(program, |line, argument| format!("{line} {}", quoted(argument.as_ref())))
 }
 

@@ -5,7 +5,8 @@
 use pathmark_lanes::kernel::{Counts, Kernel, Spec, build, choose, devices};
 use pathmark_tracer::estimator::ESTIMATORS;
 use pathmark_tracer::film::{Bounds, Piece, TileBuffer};
-use pathmark_tracer::scene::{SCENES, Scene, load};
+use pathmark_tracer::scene::{PROFILES, SCENES, Scene, load};
+use std::collections::BTreeSet;
 use std::slice::from_ref;
 use std::sync::Arc;
 
@@ -30,16 +31,16 @@ fn render(kernel: &dyn Kernel, piece: &Piece) -> (TileBuffer, Counts) {
 /// precision the oracle is the kernel `lanes`. Its counts of box and primitive tests are not compared, because it tests
 /// rays against more of them at a time. Returns `false` if the device does not render them.
 fn is_same(scene: &Arc<Scene>, spec: &Spec, device: &str, pieces: &[Piece]) -> bool {
-    // Drivers take seconds to compile a program, C compilers less: the host has a program per profile, other devices
-    // one for all.
-    let effects = (device != HOST).then(|| "all".to_string());
+    // Drivers take seconds to compile a program, C compilers less: the host may have a program per profile, other
+    // devices have one for all.
+    let effects = if device == HOST { spec.effects.clone() } else { Some("all".to_string()) };
     let on_device = Spec { kernel: device.to_string(), effects, ..spec.clone() };
     if choose(scene, &on_device).unwrap().plan.name() != device {
         return false;
     }
     let is_single = spec.precision == "f32";
     let oracle = if is_single { "lanes" } else { "scalar" };
-    let scalar = build(scene, &Spec { kernel: oracle.into(), ..spec.clone() }).unwrap();
+    let scalar = build(scene, &Spec { kernel: oracle.into(), effects: None, ..spec.clone() }).unwrap();
     let comparable =
         |counts: Counts| if is_single { Counts { box_tests: 0, primitive_tests: 0, ..counts } } else { counts };
     let kernel = build(scene, &on_device).unwrap();
@@ -67,20 +68,25 @@ fn devices_add_up_samples_as_a_film_does() {
 }
 
 /// Compares every scene with every estimator on a device, in one precision. One scene gets every sampler. The others
-/// take turns with the samplers, because random numbers do not depend on the scene.
+/// take turns with the samplers, because random numbers do not depend on the scene. A program for a profile renders that
+/// scene and the first one of the profile; all others have the program for every effect, unless the test is thorough.
 fn have_the_scalar_kernels_bits(device: &str, precision: &str) {
     let piece = Piece { bounds: Bounds { x0: 0, y0: 0, x1: 24, y1: 18 }, samples: 0..8 };
     let (mut compared, mut scenes) = (0, 0);
+    let (mut profiles, is_thorough) = (BTreeSet::new(), std::env::var_os("PATHMARK_THOROUGH").is_some());
     let mut next = SAMPLERS.into_iter().cycle();
     for (name, _) in SCENES {
         let scene = Arc::new(load(name).unwrap());
         let before = compared;
+        let profile = PROFILES.iter().find(|entry| entry.effects.cover(scene.effects())).map(|entry| entry.name);
+        let is_first = profiles.insert(profile);
+        let effects = (!is_first && !is_thorough && *name != "cornell").then(|| "all".to_string());
         for estimator in ESTIMATORS {
             let samplers = next.by_ref().take(if *name == "cornell" { SAMPLERS.len() } else { 1 });
             for sampler in samplers {
                 let (estimator, sampler) = (estimator.name.to_string(), sampler.to_string());
                 let spec = Spec { width: 24, height: 18, seed: 3, estimator, sampler, ..Spec::default() };
-                let spec = Spec { precision: precision.to_string(), ..spec };
+                let spec = Spec { precision: precision.to_string(), effects: effects.clone(), ..spec };
                 compared += usize::from(is_same(&scene, &spec, device, from_ref(&piece)));
             }
         }

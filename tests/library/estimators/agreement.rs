@@ -10,8 +10,9 @@ use pathmark::estimator::ESTIMATORS;
 use pathmark::film::{Film, PixelSum};
 use pathmark::kernel::Spec;
 use pathmark::measure::{Settings, Setup};
-use pathmark::scene::SCENES;
+use pathmark::scene::{SCENES, Scene, load};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
+use std::sync::Arc;
 
 /// Few pixels with many samples: a z-score is normal only if the sample variance has converged.
 const SIZE: (u32, u32) = (8, 6);
@@ -22,19 +23,18 @@ const LEVEL: f64 = 1e-3;
 /// pixel is unreliable, so `nee` and `mis` are compared by pixels, and both with `bsdf` by the mean of the image.
 const RARELY_MET: [&str; 3] = ["cornell-small-light", "nightsky", "toy-path-tracer"];
 
-fn film(scene: &str, (estimator, camera_rays): (&str, Option<u16>), seed: u64) -> Film {
+fn film(scene: &Arc<Scene>, (estimator, camera_rays): (&str, Option<u16>), seed: u64) -> Film {
     let spec =
         Spec { width: SIZE.0, height: SIZE.1, seed, estimator: estimator.into(), camera_rays, ..Spec::default() };
     let settings = Settings {
-        scene: scene.into(),
         spp: SPP,
         spec,
         decomposition: "tiles:8x8".into(),
         strategy: "work-stealing".into(),
         ..Settings::default()
     };
-    let outcome = Setup::prepare(settings).unwrap().run(None).unwrap();
-    assert_eq!(outcome.counts.invalid, 0, "{scene}, {estimator}");
+    let outcome = Setup::for_scene(Arc::clone(scene), settings).unwrap().run(None).unwrap();
+    assert_eq!(outcome.counts.invalid, 0, "{}, {estimator}", scene.name);
     outcome.film
 }
 
@@ -81,9 +81,10 @@ fn estimators_agree_on_every_scene() {
     let mut wrong = Vec::new();
     for (scene, _) in SCENES {
         let scene = if *scene == "spheres" { "spheres:100" } else { scene };
-        let right = pixels(&film(scene, ("bsdf", None), 1));
+        let loaded = Arc::new(load(scene).unwrap());
+        let right = pixels(&film(&loaded, ("bsdf", None), 1));
         let images: Vec<_> =
-            (2..).zip(&others).map(|(seed, other)| (*other, pixels(&film(scene, *other, seed)))).collect();
+            (2..).zip(&others).map(|(seed, other)| (*other, pixels(&film(&loaded, *other, seed)))).collect();
         let one_ray =
             |name: &str| images.iter().find(|(other, _)| *other == (name, None)).map_or(&right, |found| &found.1);
         let mut compare = |what: &str, scores: &[f64]| {

@@ -58,13 +58,16 @@ fn is_for_lanes(scene: &Scene, spec: &Spec) -> bool {
 #[test]
 fn every_scene_has_the_scalar_kernels_bits() {
     let watchdog = Watchdog::new(Duration::from_mins(5));
+    const SAMPLERS: [&str; 3] = ["independent", "hash", "sobol"];
     let (mut compared, mut scenes) = (0, 0);
+    let mut next = SAMPLERS.into_iter().cycle();
     for (name, _) in SCENES {
         watchdog.now(*name);
         let scene = Arc::new(load(name).unwrap());
         let before = compared;
         for estimator in ESTIMATORS {
-            for sampler in ["independent", "hash", "sobol"] {
+            // Random numbers do not depend on the scene, so only one scene gets every sampler.
+            for sampler in next.by_ref().take(if *name == "cornell" { SAMPLERS.len() } else { 1 }) {
                 let (estimator, sampler) = (estimator.name.to_string(), sampler.to_string());
                 let spec = Spec { width: 16, height: 12, seed: 3, estimator, sampler, ..Spec::default() };
                 if !is_for_lanes(&scene, &spec) {
@@ -77,7 +80,7 @@ fn every_scene_has_the_scalar_kernels_bits() {
         }
         scenes += usize::from(compared > before);
     }
-    assert!(scenes >= 24 && compared >= 8 * 24, "{compared} comparisons of {scenes} scenes");
+    assert!(scenes >= 24 && compared >= 4 * 24, "{compared} comparisons of {scenes} scenes");
 }
 
 /// Above 16,384 primitives lanes look up the rows of objects. In double precision the bits equal the scalar kernel's.

@@ -102,7 +102,7 @@ fn pixels_of_single_precision_converge_to_those_of_double() {
     let scenes: Vec<&Arc<Scene>> = scenes.iter().filter(is_tried).collect();
     assert!(scenes.len() > 10, "{} scenes of spheres", scenes.len());
     let images_of_all = scenes.len() as f64 * 2.0 * SEEDS as f64;
-    let spp = if is_thorough() { (THOROUGH / images_of_all / f64::from(WIDTH * HEIGHT)).ceil() as u32 } else { 32 };
+    let spp = if is_thorough() { (THOROUGH / images_of_all / f64::from(WIDTH * HEIGHT)).ceil() as u32 } else { 16 };
     let critical = Normal::standard().inverse_cdf(1.0 - 1e-3 / scenes.len() as f64 / 2.0);
     for scene in &scenes {
         watchdog.now(scene.name.clone());

@@ -28,7 +28,7 @@ pub(super) fn sphere_over_a_plane(trials: &mut Trials) {
         let scene = scene(&[camera([x + 3.0, 0.02, 0.0], [x, 0.0, 0.0]), floor(0.5), light]);
         let what = format!("a {radius}, h {height}, x {x}");
         bench.rare = height < 1.1;
-        bench.widest = [1e-2, 1e-3];
+        bench.widest = [2e-2, 1e-3];
         bench.each(&what, &scene, aiming_estimators(), &[exact]);
         if exact > 0.02 {
             bench.widest = if exact > 0.1 { [2e-2, 2e-3] } else { [4e-2, 4e-3] };
@@ -54,7 +54,7 @@ pub(super) fn square_over_a_plane(trials: &mut Trials) {
     ] {
         let scene = scene(&[camera(at, spot), floor(0.5), light]);
         let exact = 0.5 * FRAC_1_PI * irradiance;
-        bench.widest = [1e-2, 1e-3];
+        bench.widest = [2e-2, 1e-3];
         bench.each(what, &scene, aiming_estimators(), &[exact]);
         if irradiance > 0.4 {
             bench.widest = [2e-2, 2e-3];
@@ -85,7 +85,7 @@ pub(super) fn ball_under_half_a_sky(trials: &mut Trials) {
         let background = "background = [1.0, 1.0, 1.0]\n".to_string();
         let at = camera([4.0 * sin, 4.0 * cos, 0.0], [0.0; 3]);
         let scene = scene(&[background, at, earth.clone(), ball.clone()]);
-        bench.widest = if sky == 0.25 { [2e-2, 1e-3] } else { [1e-2, 1e-3] };
+        bench.widest = [2e-2, 1e-3];
         bench.each(&format!("beta {degrees}"), &scene, unsplit_estimators(), &[0.5 * sky]);
     }
 }
@@ -138,6 +138,8 @@ pub(super) fn metal_under_a_sky(trials: &mut Trials) {
     let fewest = trials.times(8192, 10_000_000) as f64;
     let mut bench = Bench::new(trials);
     bench.fewest = fewest;
+    // Case H26 holds the same table more closely; this one guards the way into a render.
+    bench.widest = [2e-2, 1e-3];
     for (alpha, row) in ALBEDO {
         // Smooth metal loses only the few reflections that leave below the horizon.
         bench.rare = alpha < 0.1;

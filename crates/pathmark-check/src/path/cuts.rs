@@ -26,7 +26,7 @@ pub(super) fn depth(trials: &mut Trials) {
             bench.trials.close(format!("{what}: missing, {way}"), missing, missed, 1e-11);
         }
         bench.roulette = None;
-        bench.widest = [2e-2, 2e-3];
+        bench.widest = if rho > 0.9 { [5e-2, 2e-3] } else { [2e-2, 2e-3] };
         bench.each(&what, &scene, arriving_estimators(), &[(1.0 - missing) / (1.0 - rho)]);
     }
     on_record(trials);

@@ -76,6 +76,11 @@ fn images(trials: &mut Trials) {
         let spec = Spec { width: 9, height: 7, seed: 7, kernel: kernel.to_string(), ..Spec::default() };
         Settings { spp: 52, spec, decomposition: "rows".into(), strategy: "serial".into(), ..Settings::default() }
     };
+    let examples = DECOMPOSITIONS.iter().map(|entry| entry.example);
+    let decompositions: Vec<&str> = examples.chain(["tiles:1x1", "tiles:5x3:spiral", "samples:16:4x4"]).collect();
+    // A quick run takes two of them in turn.
+    let few = trials.times(2, decompositions.len() as u64) as usize;
+    let mut turns = decompositions.iter().cycle();
     for kernel in KERNELS {
         let checksum = |settings| run(&scene, settings).checksum;
         let expected = checksum(small(kernel.name));
@@ -84,8 +89,7 @@ fn images(trials: &mut Trials) {
             let threads: &[usize] = if strategy.workers == Workers::Threads { &[1, 2, 8] } else { &[1] };
             let mut others = Vec::new();
             for &threads in threads {
-                let examples = DECOMPOSITIONS.iter().map(|entry| entry.example);
-                for decomposition in examples.chain(["tiles:1x1", "tiles:5x3:spiral", "samples:16:4x4"]) {
+                for decomposition in turns.by_ref().take(few) {
                     let (strategy, decomposition) = (strategy.name.to_string(), decomposition.to_string());
                     let what = format!("{decomposition} on {threads}");
                     if checksum(Settings { decomposition, strategy, threads, ..small(kernel.name) }) != expected {

@@ -82,7 +82,7 @@ pub(super) fn black(trials: &mut Trials) {
 pub(super) fn fair(trials: &mut Trials) {
     let scene = hollow(&diffuse([0.5, 0.9, 0.2]), [1.0, 2.0, 3.0]);
     let mut bench = Bench::new(trials);
-    bench.widest = [3e-2, 1e-3];
+    bench.widest = [5e-2, 1e-3];
     for rule in
         ["never", "albedo:0", "albedo:1", "albedo:3", "albedo:5", "throughput:0", "throughput:5", "constant:0.95"]
     {
@@ -98,16 +98,16 @@ pub(super) fn fair(trials: &mut Trials) {
 /// + (1 - rho)^2/rho, gives the standard error of the variance.
 pub(super) fn spread(trials: &mut Trials) {
     for (rho, deviation, quick) in [
-        (0.1, 0.351_364_184_463_153_4, 256),
-        (0.5, std::f64::consts::SQRT_2, 256),
-        (0.75, 3.464_101_615_137_754_6, 256),
-        (0.9, 9.486_832_980_505_138, 128),
-        (0.99, 99.498_743_710_661_99, 32),
+        (0.1, 0.351_364_184_463_153_4, 128),
+        (0.5, std::f64::consts::SQRT_2, 128),
+        (0.75, 3.464_101_615_137_754_6, 128),
+        (0.9, 9.486_832_980_505_138, 64),
+        (0.99, 99.498_743_710_661_99, 16),
         (0.999, 999.499_874_937_460_9, 4),
     ] {
         let rho: f64 = rho;
         let scene = hollow(&diffuse([rho; 3]), [1.0; 3]);
-        let spp = trials.times(quick, 64 * quick) as u32;
+        let spp = trials.times(quick, 128 * quick) as u32;
         let rho5 = rho * rho * rho * rho * rho;
         for (rule, weight) in [("albedo:0", 1.0), ("albedo:5", rho5)] {
             for (estimator, kernel) in with_kernels(arriving_estimators()) {

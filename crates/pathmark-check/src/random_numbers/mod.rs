@@ -24,7 +24,7 @@ pub(super) const SECTION: Section = Section {
             "neighbours do not differ by a constant, as those of a generator seeded by the pixel do",
             rows::neighbours,
         ),
-        case("R04", "8 draws of 786 432 pixels, 4 seeds: chi-square, two-sided, and lags", pixels::across),
+        case("R04", "8 draws of 786 432 pixels, up to 4 seeds: chi-square, two-sided, and lags", pixels::across),
         case("R05", "no key of pixels and seeds makes a generator of zeros", keys::zeros),
         case("R06", "no two addresses share their numbers; the mix is a bijection", keys::collisions),
         case("R07", "noise of seeds s and s + 2^k at all lags, draws and images", seeds::seeds),

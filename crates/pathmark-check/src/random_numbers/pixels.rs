@@ -44,7 +44,7 @@ pub(super) fn across(trials: &mut Trials) {
     for (name, sampler) in keyed() {
         let mut all = [const { Vec::new() }; 3];
         // Samplers that spread a pixel's samples are slower, and their first samples are as independent as any.
-        let seeds = if is_spread(name) { trials.times(1, 4) } else { 4 };
+        let seeds = if is_spread(name) { trials.times(1, 4) } else { trials.times(2, 4) };
         for seed in SEEDS.into_iter().take(seeds as usize) {
             for sample in 0..samples {
                 let mut draws: Draws = vec![Vec::with_capacity(PIXELS); 2 * USES.len()];

@@ -37,9 +37,20 @@ const INTEGRANDS: [Integrand; 6] = [
     },
 ];
 
-fn estimate(sampler: &dyn Sampler, integrand: &Integrand, seed: u64, pixel: u32, samples: u32) -> f64 {
-    let numbers = |sample| USES.map(|used| first(sampler, seed, pixel, sample, used));
-    (0..samples).map(|sample| (integrand.value)(sample % 4, numbers(sample))).sum::<f64>() / f64::from(samples)
+/// Errors of all integrands after each of these numbers of samples, which ascend.
+fn errors(sampler: &dyn Sampler, seed: u64, pixel: u32, counts: &[u32]) -> Vec<[f64; INTEGRANDS.len()]> {
+    let (mut sums, mut drawn) = ([0.0; INTEGRANDS.len()], 0);
+    let after = |count: &u32| {
+        while drawn < *count {
+            let numbers = USES.map(|used| first(sampler, seed, pixel, drawn, used));
+            for (sum, integrand) in sums.iter_mut().zip(&INTEGRANDS) {
+                *sum += (integrand.value)(drawn % 4, numbers);
+            }
+            drawn += 1;
+        }
+        std::array::from_fn(|index| sums[index] / f64::from(*count) - INTEGRANDS[index].mean)
+    };
+    counts.iter().map(after).collect()
 }
 
 pub(super) fn spread(trials: &mut Trials) {
@@ -51,24 +62,23 @@ pub(super) fn spread(trials: &mut Trials) {
 /// The mean over scramblings is right: for complete and incomplete sets of strata, for square and other counts, and
 /// for even and odd seeds.
 fn means(trials: &mut Trials) {
+    const COUNTS: [u32; 6] = [4, 12, 16, 20, 64, 100];
     let scramblings = trials.times(1000, 10_000) as u32;
-    let counts = [4, 12, 16, 20, 64, 100];
-    let limit = critical(keyed().count() * counts.len() * INTEGRANDS.len());
+    let limit = critical(keyed().count() * COUNTS.len() * INTEGRANDS.len());
     for (name, sampler) in keyed() {
-        for integrand in &INTEGRANDS {
-            for samples in counts {
-                let (mut sum, mut squares) = (0.0, 0.0);
-                for pixel in 0..scramblings {
-                    let error =
-                        estimate(&*sampler, integrand, u64::from(3 + pixel % 2), pixel, samples) - integrand.mean;
-                    sum += error;
-                    squares += error * error;
-                }
-                trials.deviates_below(
-                    format!("{name}, {}, {samples} samples", integrand.name),
-                    limit,
-                    sum / squares.sqrt(),
-                );
+        // Sum and sum of squares, by number of samples and integrand.
+        let mut sums = [[[0.0; 2]; INTEGRANDS.len()]; COUNTS.len()];
+        for pixel in 0..scramblings {
+            let errors = errors(&*sampler, u64::from(3 + pixel % 2), pixel, &COUNTS);
+            for ([sum, squares], error) in sums.iter_mut().flatten().zip(errors.iter().flatten()) {
+                *sum += error;
+                *squares += error * error;
+            }
+        }
+        for (samples, sums) in COUNTS.iter().zip(&sums) {
+            for (integrand, [sum, squares]) in INTEGRANDS.iter().zip(sums) {
+                let what = format!("{name}, {}, {samples} samples", integrand.name);
+                trials.deviates_below(what, limit, sum / squares.sqrt());
             }
         }
     }
@@ -81,9 +91,9 @@ fn convergence(trials: &mut Trials) {
     // Six standard deviations of independent samples of the integrand with the largest variance, 4.6.
     let allowed = 6.0 * (4.6 / f64::from(samples)).sqrt();
     for (name, sampler) in keyed() {
-        for integrand in &INTEGRANDS {
-            let off = |pixel| (estimate(&*sampler, integrand, 3, pixel, samples) - integrand.mean).abs();
-            let worst = (0..4).map(off).fold(0.0, f64::max);
+        let pixels = [0, 1, 2, 3].map(|pixel| errors(&*sampler, 3, pixel, &[samples])[0]);
+        for (index, integrand) in INTEGRANDS.iter().enumerate() {
+            let worst = pixels.iter().map(|errors| errors[index].abs()).fold(0.0, f64::max);
             trials.at_most(format!("{name}, {}: worst pixel after {samples} samples", integrand.name), allowed, worst);
         }
     }

@@ -73,7 +73,7 @@ fn white(alpha: f64) -> Material {
 /// Compares sampling, and the quadrature behind scenes in equilibrium, with the table. At α = 1 and normal incidence
 /// the albedo is 1 - ln 2.
 fn albedos_of_the_table(trials: &mut Trials) {
-    let n = trials.times(100_000, 1_000_000);
+    let n = trials.times(50_000, 1_000_000);
     let quadrature = |alpha: f64, cos: f64| white(alpha).albedo_at(cos).map_or(f64::NAN, |albedo| albedo.r);
     for (alpha, row) in TABLE {
         let white = white(alpha);

@@ -13,7 +13,7 @@ use crate::stage::{DIFFUSE, camera, named, try_scene};
 use std::sync::Arc;
 
 pub(super) fn closed_box(trials: &mut Trials) {
-    let most = trials.times(400_000, 100_000_000);
+    let most = trials.times(100_000, 100_000_000);
     let cornell = load("cornell").expect("a shipped scene");
     let equilibrium = Arc::new(cornell.in_equilibrium());
     for (scene, what) in [(Arc::new(cornell), "lit"), (equilibrium, "in equilibrium")] {

@@ -46,7 +46,7 @@ fn grid_ray(random: &mut Random, _primitives: &Primitives) -> Ray {
 }
 
 pub(super) fn every_kind(trials: &mut Trials) {
-    let rays = trials.times(180_000, 10_000_000) / 6;
+    let rays = trials.times(60_000, 10_000_000) / 6;
     for (what, primitives, make_ray) in arrangements() {
         let all = scene_of(primitives);
         for (name, accelerated) in searches(&all).filter(|(_, scene)| scene.hierarchy.is_some()) {

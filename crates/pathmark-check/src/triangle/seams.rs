@@ -74,7 +74,7 @@ fn point_of(seams: &[[Vec3; 2]], random: &mut Random) -> Vec3 {
 }
 
 pub(super) fn rays_from_seams(trials: &mut Trials) {
-    let rays = trials.times(40_000, 10_000_000);
+    let rays = trials.times(10_000, 10_000_000);
     for Surface { name, triangles, seams } in surfaces() {
         let plain = scene(triangles);
         for (accelerator, scene) in searches(&plain) {

@@ -60,7 +60,7 @@ fn far_away(random: &mut Random, away: f64) -> Primitives {
 }
 
 pub(super) fn same_hits(trials: &mut Trials) {
-    let scenes = trials.times(40, 4000);
+    let scenes = trials.times(16, 4000);
     for height in [-12.0, -14.0, -15.0, -16.0, -17.0] {
         compare(trials, &format!("heights of 1e{height}"), scenes, |random| among_others(random, height));
     }

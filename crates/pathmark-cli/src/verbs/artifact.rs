@@ -39,8 +39,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     if arguments.check {
         let checked = check(lab, archive, arguments.claim)?;
         print(&checked.verdicts.join("\n"))?;
-        let (files, rows) = (counted(checked.files, "file"), counted(checked.experiments, "experiment"));
-        return print(&format!("{shown}: {files} with their checksums, rows of {rows}, all verdicts as stated"));
+        let (files, rows) = (counted(checked.files, "file"), checked.rows);
+        return print(&format!("{shown}: {files} with their checksums, {rows}, all verdicts as stated"));
     }
     let citation = Citation::choose(title.as_deref(), authors, license.as_deref(), Path::new(CITATION))?;
     let request = Request { archive, folders, ledger: ledger.as_deref(), citation: &citation };

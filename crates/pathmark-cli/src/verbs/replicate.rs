@@ -73,9 +73,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
         let theirs = Theirs::read(lab, &folder)?;
         machines.push(theirs.machine.clone());
         match theirs.runnable()? {
-            Err(why) => {
-                console.note(&format!("{} is left out: {why}", theirs.definition.name));
-                statements.push(theirs.cannot_be_measured(why));
+            Err(verdict) => {
+                console.note(&format!("{} is left out: {}", theirs.definition.name, verdict.lacks()));
+                statements.push(theirs.cannot_be_measured(verdict));
             }
             Ok(filters) => {
                 check_figures(&theirs.definition)?;
@@ -138,7 +138,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
         print(&format!("statements in {}, report in {}", text.display(), page.display()))?;
     }
     match wrong.len() {
-        0 => Ok(()),
+        0 if found.statements.iter().any(|own| own.verdict.is_judged()) => Ok(()),
+        0 => Err(Error::Check("no statement could be judged".to_string())),
         count => Err(Error::Check(format!("{} not reproduced", counted(count, "statement")))),
     }
 }

@@ -280,7 +280,7 @@ mod tests {
         assert_eq!(change(&[1.0], &[9.0], false), Change::Undecided);
     }
 
-    /// Simulates sweeps of six cells that run until each cell is decided, at most 200 times. Returns the number of
+    /// Simulates sweeps of six cells that run until each cell is decided, at most 100 times. Returns the number of
     /// sweeps with a slower cell and the mean repetitions of a cell. The new build's times are `factor` times the old
     /// ones. Both have noise of about 7 % with a heavy tail, and both rows of a pair share a drift.
     fn sweeps(count: u32, factor: f64, seed: u128) -> (u32, f64) {
@@ -296,7 +296,7 @@ mod tests {
             let mut is_slower = false;
             for _ in 0..6 {
                 let [mut old, mut new] = [BTreeMap::new(), BTreeMap::new()];
-                let change = (0..200).find_map(|at| {
+                let change = (0..100).find_map(|at| {
                     let drift = 1.0 + 0.5 * libm::sin(0.1 * f64::from(at));
                     old.insert((at, None), drift * noise());
                     new.insert((at, None), drift * noise() * factor);

@@ -9,6 +9,9 @@ use std::path::{Path, PathBuf};
 /// The ending of packed files.
 const PACKED: &str = "gz";
 
+/// The most bytes of unpacked rows: some five hundred thousand rows. A packed file may stand for a thousand times its size.
+const LARGEST: u64 = 512 << 20;
+
 /// The file of a folder's rows: the packed one if there is no other.
 pub fn records_path(folder: &Path) -> PathBuf {
     let plain = folder.join(RECORDS);
@@ -23,6 +26,11 @@ pub fn has_records(folder: &Path) -> bool {
 
 /// The bytes of a file of rows, unpacked.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
+    read_up_to(path, LARGEST)
+}
+
+/// The same for packed rows that have at most so many bytes unpacked.
+fn read_up_to(path: &Path, most: u64) -> Result<Vec<u8>> {
     let refused = |problem: &str| InputError::new("records", path.display().to_string(), problem);
     let bytes = std::fs::read(path).map_err(|e| match e.kind() {
         std::io::ErrorKind::NotFound => refused("there is no such file").into(),
@@ -32,8 +40,12 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
         return Ok(bytes);
     }
     let mut unpacked = Vec::new();
-    let done = MultiGzDecoder::new(bytes.as_slice()).read_to_end(&mut unpacked);
+    let done = MultiGzDecoder::new(bytes.as_slice()).take(most + 1).read_to_end(&mut unpacked);
     done.map_err(|e| refused(&format!("cannot be unpacked: {e}")))?;
+    if unpacked.len() as u64 > most {
+        let problem = format!("has more than {most} bytes when it is unpacked, the most that packed rows may have");
+        return Err(refused(&problem).allowed("smaller rows, or rows that are not packed").into());
+    }
     Ok(unpacked)
 }
 
@@ -68,5 +80,24 @@ mod tests {
         // Rows that are not packed come first.
         std::fs::write(&plain, text).unwrap();
         assert_eq!(records_path(folder.path()), plain);
+    }
+
+    /// A million zeros in a kilobyte, and twice as many in two parts.
+    #[test]
+    fn rows_that_are_too_large_unpacked_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let packed = folder.path().join("records.csv.gz");
+        let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+        encoder.write_all(&vec![0; 1 << 20]).unwrap();
+        let bomb = encoder.finish().unwrap();
+        assert!(bomb.len() < 2000, "{}", bomb.len());
+        for (parts, bytes) in [(1, 1 << 20), (2, 2 << 20)] {
+            std::fs::write(&packed, bomb.repeat(parts)).unwrap();
+            assert_eq!(read_up_to(&packed, bytes).unwrap().len() as u64, bytes);
+            let error = read_up_to(&packed, bytes - 1).unwrap_err();
+            assert_eq!(error.exit_code(), 2, "{error}");
+            let told = format!("records.csv.gz: has more than {} bytes", bytes - 1);
+            assert!(error.to_string().contains(&told), "{error}");
+        }
     }
 }

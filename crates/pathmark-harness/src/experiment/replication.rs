@@ -29,6 +29,9 @@ use std::sync::Arc;
 /// The file of verdicts in the folder of a replication.
 pub const REPLICATION: &str = "replication.json";
 
+/// Fewest seeds for the interval of a slope.
+const FEWEST_SEEDS: usize = 2;
+
 /// The name of the fact that tells two versions of the program apart.
 const SOURCES: &str = "Pathmark's sources";
 
@@ -59,10 +62,10 @@ impl Theirs {
         more_than_here(cell.settings.threads.min(self.machine.processors), "processor")
     }
 
-    /// The filters that leave the cells which can run here. If there are none, the error says why.
-    pub fn runnable(&self) -> Result<std::result::Result<Vec<String>, String>> {
+    /// The filters that leave the cells which can run here. If there are none, the verdict on all of them.
+    pub fn runnable(&self) -> Result<std::result::Result<Vec<String>, Reproduction>> {
         if let Some((feature, takes)) = self.definition.missing_feature() {
-            return Ok(Err(format!("this build lacks {feature}: {takes}")));
+            return Ok(Err(Reproduction::NotMeasured(format!("this build lacks {feature}: {takes}"))));
         }
         let cells = self.definition.cells(self.profile)?;
         let absent: Vec<String> = cells.iter().filter_map(|cell| self.absent(cell)).collect();
@@ -70,7 +73,7 @@ impl Theirs {
         let here: Vec<String> = here.collect::<BTreeSet<usize>>().iter().map(usize::to_string).collect();
         Ok(match (absent.first(), here.is_empty()) {
             (None, _) => Ok(Vec::new()),
-            (Some(why), true) => Err(why.clone()),
+            (Some(why), true) => Err(Reproduction::OtherHardware(why.clone())),
             (Some(_), false) => Ok(vec![format!("threads={}", here.join(","))]),
         })
     }
@@ -86,10 +89,10 @@ impl Theirs {
         Ok(Statements(both.statements(&pairs)))
     }
 
-    /// The statement that none of it can be measured here, and why.
-    pub fn cannot_be_measured(&self, why: String) -> Statements {
+    /// The statement that none of it can be measured here, with its verdict.
+    pub fn cannot_be_measured(&self, verdict: Reproduction) -> Statements {
         let (experiment, says) = (self.definition.name.clone(), "all cells".to_string());
-        Statements(vec![Unjudged { experiment, kind: Kind::Cells, says, evidence: Evidence::lacking(None, why) }])
+        Statements(vec![Unjudged { experiment, kind: Kind::Cells, says, evidence: Evidence::lacking(None, verdict) }])
     }
 }
 
@@ -103,10 +106,10 @@ fn more_than_here(count: usize, thing: &str) -> Option<String> {
 /// The statements of an experiment, before those of all are judged together.
 pub struct Statements(Vec<Unjudged>);
 
-/// Rows that did not fail; and by cell the errors of the others.
+/// Rows that did not fail; and by cell the verdicts for the others.
 pub(super) struct Rows {
     measured: Vec<Record>,
-    failed: BTreeMap<String, String>,
+    failed: BTreeMap<String, Reproduction>,
     stopping: Stopping,
     /// Whether the limits of matrices on repetitions did not apply.
     uncapped: bool,
@@ -123,7 +126,11 @@ impl Rows {
     pub(super) fn of(all: Vec<Record>, stopping: Stopping, uncapped: bool) -> Self {
         let (measured, failed): (Vec<_>, Vec<_>) =
             all.into_iter().partition(|row| row.error.is_empty() && !row.is_left_out());
-        let why = |row: Record| (row.cell, if row.error.is_empty() { row.warnings } else { row.error });
+        let why = |row: Record| {
+            let verdict = if row.lacks_device() { Reproduction::OtherHardware } else { Reproduction::NotMeasured };
+            let why = row.lacks().unwrap_or(row.error);
+            (row.cell, verdict(why))
+        };
         Self { measured, failed: failed.into_iter().map(why).collect(), stopping, uncapped }
     }
 
@@ -132,19 +139,20 @@ impl Rows {
         schedules_of(self.measured.iter().zip(turns(&self.measured)), &shown_only)
     }
 
-    /// The exponent of RMSE against samples of each image, over its seeds.
-    fn slopes(&self) -> BTreeMap<ImageKey, Measured> {
+    /// The exponent of RMSE against samples of each image that has several numbers of samples, and how many seeds it has.
+    fn slopes(&self) -> BTreeMap<ImageKey, (Option<Measured>, usize)> {
         let mut images: BTreeMap<ImageKey, BTreeMap<u32, BTreeMap<u64, f64>>> = BTreeMap::new();
         for (row, mse) in self.measured.iter().filter_map(|row| Some((row, row.mse?))) {
             let errors = images.entry(of_curve(row.image_key())).or_default();
             errors.entry(row.spp).or_default().entry(row.seed).or_insert(mse);
         }
+        images.retain(|_, errors| errors.len() > 1);
         let slope = |errors: BTreeMap<u32, BTreeMap<u64, f64>>| {
             let seeds = errors.values().flat_map(BTreeMap::keys).copied().collect();
             let curves: Vec<_> = curves_of(&seeds, errors).into_values().collect();
-            exponent(&SeedCurves::of_errors(&curves)?)
+            (SeedCurves::of_errors(&curves).and_then(|curves| exponent(&curves)), seeds.len())
         };
-        images.into_iter().filter_map(|(image, errors)| Some((image, slope(errors)?))).collect()
+        images.into_iter().map(|(image, errors)| (image, slope(errors))).collect()
     }
 }
 
@@ -175,14 +183,14 @@ impl Both<'_> {
         Unjudged { experiment: self.experiment.to_string(), kind, says, evidence }
     }
 
-    /// Why none of the cells that are meant has rows here.
-    fn why_not(&self, is_meant: impl Fn(&Cell) -> bool) -> String {
+    /// The verdict if none of the cells that are meant has rows here.
+    fn why_not(&self, is_meant: impl Fn(&Cell) -> bool) -> Reproduction {
         let meant: Vec<&Cell> = self.cells.iter().filter(|cell| is_meant(cell)).collect();
-        let absent = meant.iter().find_map(|cell| (self.absent)(cell));
-        let points = || meant.iter().flat_map(|cell| &cell.points);
-        absent
-            .or_else(|| points().find_map(|point| self.here.failed.get(&point.id)).cloned())
-            .unwrap_or_else(|| "no rows here".to_string())
+        if let Some(why) = meant.iter().find_map(|cell| (self.absent)(cell)) {
+            return Reproduction::OtherHardware(why);
+        }
+        let failed = meant.iter().flat_map(|cell| &cell.points).find_map(|point| self.here.failed.get(&point.id));
+        failed.cloned().unwrap_or_else(|| Reproduction::NotMeasured("no rows here".to_string()))
     }
 
     fn ratios(&self, pairs: &[Comparison]) -> Vec<Unjudged> {
@@ -192,20 +200,17 @@ impl Both<'_> {
         };
         let of_pair = |pair: &Comparison| {
             let both = [&self.cells[pair.what], &self.cells[pair.with]];
-            let earlier = log_ratio(&processes(&theirs, both)?)?;
-            let ratio = Some(libm::exp(earlier.value));
-            let later = processes(&here, both).filter(|own| !own.is_empty());
-            let evidence = match later.filter(|_| !both.into_iter().any(|cell| (self.absent)(cell).is_some())) {
-                None => Evidence::lacking(ratio, self.why_not(|cell| both.iter().any(|own| own.id == cell.id))),
-                Some(own) => {
-                    if let Some(later) = log_ratio(&own) {
-                        Evidence::Values { theirs: earlier, here: later, limit: libm::log(1.0 + self.share) }
-                    } else {
-                        let more = FEWEST_PROCESSES.checked_sub(own.len()).filter(|more| *more > 0);
-                        let verdict = Reproduction::CannotTell(more);
-                        Evidence::Known { theirs: ratio, verdict, note: String::new() }
-                    }
-                }
+            let told = processes(&theirs, both).filter(|own| !own.is_empty())?;
+            let Some(theirs) = log_ratio(&told) else {
+                return Some((both, Evidence::of_theirs(told.len(), FEWEST_PROCESSES, "repetition")));
+            };
+            let ratio = libm::exp(theirs.value);
+            let own = processes(&here, both).filter(|own| !own.is_empty());
+            let own = own.filter(|_| !both.into_iter().any(|cell| (self.absent)(cell).is_some()));
+            let evidence = match own.map(|own| (log_ratio(&own), own.len())) {
+                None => Evidence::lacking(Some(ratio), self.why_not(|cell| both.iter().any(|own| own.id == cell.id))),
+                Some((Some(here), _)) => Evidence::Values { theirs, here, limit: libm::log(1.0 + self.share) },
+                Some((None, count)) => Evidence::of_few_here(ratio, count, FEWEST_PROCESSES),
             };
             Some((both, evidence))
         };
@@ -245,14 +250,17 @@ impl Both<'_> {
 
     fn slopes(&self) -> Vec<Unjudged> {
         let here = self.here.slopes();
-        let of_image = |(image, theirs): (ImageKey, Measured)| {
+        let of_image = |(image, (theirs, seeds)): (ImageKey, (Option<Measured>, usize))| {
             // Points differ in samples and seeds.
             let says = format!("slope of RMSE, {}", image.to_string().replace("/0spp/seed0", ""));
-            let evidence = match here.get(&image) {
-                Some(here) => Evidence::Values { theirs, here: *here, limit: self.share * theirs.value.abs() },
-                None => {
-                    Evidence::lacking(Some(theirs.value), self.why_not(|cell| of_curve(cell.keys.0.clone()) == image))
+            let why_not = || self.why_not(|cell| of_curve(cell.keys.0.clone()) == image);
+            let evidence = match (theirs, here.get(&image)) {
+                (None, _) => Evidence::of_theirs(seeds, FEWEST_SEEDS, "seed"),
+                (Some(theirs), Some((Some(here), _))) => {
+                    Evidence::Values { theirs, here: *here, limit: self.share * theirs.value.abs() }
                 }
+                (Some(theirs), Some((None, seeds))) => Evidence::of_few_here(theirs.value, *seeds, FEWEST_SEEDS),
+                (Some(theirs), None) => Evidence::lacking(Some(theirs.value), why_not()),
             };
             self.unjudged(Kind::Slope, says, evidence)
         };
@@ -287,19 +295,19 @@ impl Both<'_> {
     fn others(&self) -> Vec<Unjudged> {
         let points = self.cells.iter().flat_map(|cell| &cell.points);
         let known: HashSet<&str> = points.map(|point| point.id.as_str()).collect();
-        let mut others: BTreeMap<String, BTreeSet<&str>> = BTreeMap::new();
+        let mut others: BTreeMap<Reproduction, BTreeSet<&str>> = BTreeMap::new();
         for row in self.theirs.measured.iter().filter(|row| !known.contains(row.cell.as_str())) {
-            let why = more_than_here(row.threads, "thread");
-            let why = why.unwrap_or_else(|| "this version of the program has no such cell".to_string());
-            others.entry(why).or_default().insert(&row.cell);
+            let without = || Reproduction::NotMeasured("this version of the program has no such cell".to_string());
+            let verdict = more_than_here(row.threads, "thread").map_or_else(without, Reproduction::OtherHardware);
+            others.entry(verdict).or_default().insert(&row.cell);
         }
-        let of_reason = |(why, cells): (String, BTreeSet<&str>)| {
+        let of_reason = |(verdict, cells): (Reproduction, BTreeSet<&str>)| {
             let first = cells.first().copied().unwrap_or_default();
             let says = match cells.len() {
                 1 => format!("cell {first}"),
                 count => format!("{count} cells, such as {first}"),
             };
-            self.unjudged(Kind::Cells, says, Evidence::lacking(None, why))
+            self.unjudged(Kind::Cells, says, Evidence::lacking(None, verdict))
         };
         others.into_iter().map(of_reason).collect()
     }

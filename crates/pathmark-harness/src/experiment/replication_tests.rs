@@ -6,7 +6,7 @@ use super::statements::judge_together;
 use super::{Cell, Definition, Kind, Profile, Reproduction, Statement};
 use crate::analysis::confidence_sequence::Stopping;
 use crate::lab::Lab;
-use crate::measure::{Record, available_threads};
+use crate::measure::{Record, Warning, available_threads};
 use rand::Rng;
 use rand_pcg::Pcg64Dxsm;
 use std::collections::BTreeSet;
@@ -215,7 +215,16 @@ fn slopes_are_compared_by_their_exponents() {
     let half = slope(&told(errors(2, -0.5)));
     assert_eq!(half.verdict, Reproduction::NotReproduced, "{half:?}");
     assert!((half.difference.unwrap()[0] - 0.25).abs() < 0.02, "{half:?}");
-    assert!(matches!(slope(&told(Vec::new())).verdict, Reproduction::OtherHardware(_)));
+    assert_eq!(slope(&told(Vec::new())).verdict, Reproduction::NotMeasured("no rows here".to_string()));
+    // One seed has no interval, on either side.
+    let one = |seed: u128| errors(seed, -1.0).into_iter().filter(|row| row.seed == 1).collect::<Vec<Record>>();
+    let few = slope(&told(one(2)));
+    assert_eq!((few.verdict, few.theirs.is_some()), (Reproduction::CannotTell(Some(1)), true));
+    let few = slope(&own.judged([one(1), errors(2, -1.0)]));
+    assert_eq!(
+        (few.verdict, few.note.as_str()),
+        (Reproduction::CannotTell(None), "their rows have 1 seed, and an interval needs at least 2")
+    );
 }
 
 /// Too few processes, no rows, cells that this machine cannot run, and cells that it does not even have.
@@ -229,9 +238,16 @@ fn statements_without_rows_say_what_is_missing() {
     assert_eq!(of_ratio(&two), Reproduction::CannotTell(Some(1)));
     assert_eq!(verdicts(&two, Kind::Order), ["cannot tell"; 2]);
     let failed = theirs.iter().map(|row| Record { error: "no such kernel".to_string(), ..row.clone() }).collect();
-    let lacking = Reproduction::OtherHardware("no such kernel".to_string());
+    let lacking = Reproduction::NotMeasured("no such kernel".to_string());
     assert!(told(failed).iter().all(|own| own.verdict == lacking));
-    let none = Reproduction::OtherHardware("no rows here".to_string());
+    let with = |warning: Warning| -> Vec<Record> {
+        theirs.iter().map(|row| Record { warnings: warning.to_string(), makespan_s: None, ..row.clone() }).collect()
+    };
+    let without_device = told(with(Warning::NoDevice));
+    assert!(without_device.iter().all(|own| own.verdict.lacks().ends_with("finds a GPU on this machine")));
+    assert!(without_device.iter().all(|own| own.verdict.name() == "other hardware"), "{without_device:?}");
+    assert!(told(with(Warning::NoProgram)).iter().all(|own| own.verdict.name() == "not measured"));
+    let none = Reproduction::NotMeasured("no rows here".to_string());
     assert!(told(Vec::new()).iter().all(|own| own.verdict == none));
     let absent = |cell: &Cell| (cell.settings.scene == "cornell").then(|| "64 processors instead of 2".to_string());
     let here = theirs.iter().filter(|row| row.scene != "cornell").cloned().collect();
@@ -243,6 +259,10 @@ fn statements_without_rows_say_what_is_missing() {
         assert!(without.iter().all(|own| own.verdict == lacking), "{of_kind:?}");
         assert!(with.iter().all(|own| own.verdict == Reproduction::Reproduced), "{of_kind:?}");
     }
+    let unknown = Record { cell: "of another version".to_string(), ..theirs[0].clone() };
+    let told = own.judged([[theirs.clone(), vec![unknown]].concat(), theirs.clone()]);
+    let verdict = Reproduction::NotMeasured("this version of the program has no such cell".to_string());
+    assert!(told.iter().any(|own| own.kind == Kind::Cells && own.verdict == verdict), "{told:?}");
     let threads = available_threads() + 62;
     let elsewhere = Record { cell: "elsewhere".to_string(), threads, ..theirs[0].clone() };
     let told = own.judged([[theirs.clone(), vec![elsewhere]].concat(), theirs.clone()]);
@@ -250,6 +270,20 @@ fn statements_without_rows_say_what_is_missing() {
     let [cells] = found.as_slice() else { panic!("{told:?}") };
     let why = format!("{threads} threads instead of {}", available_threads());
     assert_eq!((cells.says.as_str(), &cells.verdict), ("cell elsewhere", &Reproduction::OtherHardware(why)));
+}
+
+/// Ratios of which their rows are too few for an interval are stated, too, with what theirs lack.
+#[test]
+fn ratios_of_few_repetitions_are_stated() {
+    let own = Experiment::new();
+    let few = |count: u32| own.measured(1, usual).into_iter().filter(|row| row.repetition < count).collect();
+    let ratios = |theirs: Vec<Record>| -> Vec<Statement> {
+        own.judged([theirs, own.measured(2, usual)]).into_iter().filter(|own| own.kind == Kind::Ratio).collect()
+    };
+    let told = ratios(few(2));
+    let note = "their rows have 2 repetitions, and an interval needs at least 3";
+    assert_eq!((told.len(), ratios(few(3)).len()), (4, 4));
+    assert!(told.iter().all(|own| own.verdict == Reproduction::CannotTell(None) && own.note == note), "{told:?}");
 }
 
 /// Of many ratios with errors, each has a smaller share of the joint level, so intervals are wider than that of one alone.

@@ -75,29 +75,45 @@ impl Statement {
     }
 }
 
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", tag = "is", content = "why")]
 pub enum Reproduction {
     Reproduced,
     NotReproduced,
     /// How many more values here would tell; `None` if theirs are too few, or the difference lies at the limit.
     CannotTell(Option<usize>),
-    /// Why there are no rows here: something that this machine lacks, or the error of its rows.
+    /// Why there are no rows here, although this machine has the hardware: an error, or a program that is not there.
+    NotMeasured(String),
+    /// The part that this machine lacks.
     OtherHardware(String),
 }
 
 impl Reproduction {
     /// All verdicts, those first of which a reader wants to know first.
-    pub const NAMES: [&str; 4] = ["not reproduced", "cannot tell", "other hardware", "reproduced"];
+    pub const NAMES: [&str; 5] = ["not reproduced", "cannot tell", "not measured", "other hardware", "reproduced"];
 
     pub fn name(&self) -> &'static str {
-        let [not, untold, hardware, reproduced] = Self::NAMES;
+        let [not, untold, unmeasured, hardware, reproduced] = Self::NAMES;
         match self {
             Self::NotReproduced => not,
             Self::CannotTell(_) => untold,
+            Self::NotMeasured(_) => unmeasured,
             Self::OtherHardware(_) => hardware,
             Self::Reproduced => reproduced,
         }
+    }
+
+    /// Why there are no rows here; empty if there are some.
+    pub fn lacks(&self) -> &str {
+        match self {
+            Self::NotMeasured(why) | Self::OtherHardware(why) => why,
+            Self::Reproduced | Self::NotReproduced | Self::CannotTell(_) => "",
+        }
+    }
+
+    /// Whether the rows tell.
+    pub fn is_judged(&self) -> bool {
+        matches!(self, Self::Reproduced | Self::NotReproduced)
     }
 }
 
@@ -122,8 +138,26 @@ pub(super) enum Evidence {
 
 impl Evidence {
     /// There are no rows here, and why.
-    pub(super) fn lacking(theirs: Option<f64>, why: String) -> Self {
-        Self::Known { theirs, verdict: Reproduction::OtherHardware(why), note: String::new() }
+    pub(super) fn lacking(theirs: Option<f64>, verdict: Reproduction) -> Self {
+        Self::Known { theirs, verdict, note: String::new() }
+    }
+
+    /// Their rows give no error: they have too few units, or their values do not vary.
+    pub(super) fn of_theirs(units: usize, fewest: usize, noun: &str) -> Self {
+        let plural = if units == 1 { "" } else { "s" };
+        let note = if units < fewest {
+            format!("their rows have {units} {noun}{plural}, and an interval needs at least {fewest}")
+        } else {
+            format!("the values of their {units} {noun}{plural} give no interval")
+        };
+        Self::Known { theirs: None, verdict: Reproduction::CannotTell(None), note }
+    }
+
+    /// The rows here give no error, as those of [`Evidence::of_theirs`].
+    pub(super) fn of_few_here(theirs: f64, units: usize, fewest: usize) -> Self {
+        let more = fewest.checked_sub(units).filter(|more| *more > 0);
+        let note = if more.is_some() { "" } else { "the values here give no interval" };
+        Self::Known { theirs: Some(theirs), verdict: Reproduction::CannotTell(more), note: note.to_string() }
     }
 }
 

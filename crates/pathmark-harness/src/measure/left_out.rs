@@ -5,14 +5,22 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 impl Record {
+    fn has(&self, warning: &Warning) -> bool {
+        self.warnings.split(';').any(|own| own == warning.to_string())
+    }
+
+    /// Whether it was not run, because the machine has no device for it.
+    pub fn lacks_device(&self) -> bool {
+        self.has(&Warning::NoDevice)
+    }
+
     /// The missing program or device, in words; `None` if the row was run.
-    fn lacks(&self) -> Option<String> {
-        let has = |warning: &Warning| self.warnings.split(';').any(|own| own == warning.to_string());
-        if has(&Warning::NoDevice) {
+    pub(crate) fn lacks(&self) -> Option<String> {
+        if self.lacks_device() {
             let kernel = &self.kernel;
             return Some(format!("of the kernel {kernel}: neither CUDA nor OpenCL finds a GPU on this machine"));
         }
-        has(&Warning::NoProgram).then(|| match self.ranks {
+        self.has(&Warning::NoProgram).then(|| match self.ranks {
             Some(_) => "of several processes: there is no launcher such as mpiexec on this machine".to_string(),
             None => format!("of {}: its program is not on this machine", self.estimator),
         })

@@ -146,8 +146,8 @@ mod tests {
                 continue;
             }
             scenes += 1;
-            let (walks, edges) = walks(&scene, 20_000);
-            assert!(edges.len() > 2000, "{name}: {} rays near edges", edges.len());
+            let (walks, edges) = walks(&scene, 10_000);
+            assert!(edges.len() > 1000, "{name}: {} rays near edges", edges.len());
             for level in levels() {
                 let sure = [&walks, &edges].map(|rays| on_level(level, Precision::F64, Compare(&scene, rays)));
                 println!("{name} {}: sure of {sure:?}, in walks and near edges", level.name());

@@ -1,6 +1,6 @@
 //! How the rows of a claim are measured again, and the estimated costs.
 
-use crate::claims::{Answer, Needs};
+use crate::claims::{Answer, Needs, PlainRows};
 use crate::error::{Error, InputError, Result};
 use crate::experiment::{Options, Plan, Prices, Sweep, Theirs};
 use crate::files::Files;
@@ -10,24 +10,26 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// How the rows of a claim are measured.
-pub(super) enum Again {
+pub(super) enum Again<'a> {
     /// As the experiment of this folder, a path in the archive.
     Experiment(PathBuf),
     HardCases,
+    /// By another program.
+    Table(&'a PlainRows),
     /// Not by this program, and why.
     Not(String),
 }
 
-impl Again {
+impl<'a> Again<'a> {
     /// How the rows of an answer are measured, whose sources are paths in the archive.
-    pub(super) fn of(answer: &Answer<'_>) -> Self {
+    pub(super) fn of(answer: &Answer<'a>) -> Self {
         match answer.report.needs(answer.claim) {
             Needs::Experiment(name) => match answer.sources.first().and_then(|source| source.parent()) {
                 Some(folder) => Self::Experiment(folder.to_path_buf()),
                 None => Self::Not(format!("there are no rows of {name}")),
             },
             Needs::HardCases => Self::HardCases,
-            Needs::Table(file) => Self::Not(format!("another program measured them, into {file}")),
+            Needs::Table(table) => Self::Table(table),
             Needs::Nothing(why) => Self::Not(why),
         }
     }

@@ -3,13 +3,13 @@
 use super::again::{Again, Costs};
 use super::citation::Citation;
 use super::metadata::METADATA;
-use super::recipes::{judging, measuring};
+use super::recipes::Program;
 use super::{CLAIMS, CONTAINER, FIRST, LEDGER, MEASURE, ROWS, VERDICTS};
-use crate::claims::{Answer, totals};
+use crate::claims::{Answer, PlainRows, totals};
 use crate::experiment::RunFile;
 use crate::measure::Machine;
 use crate::words::counted;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -27,7 +27,9 @@ pub(super) struct Experiment {
 pub(super) struct Appendix<'a> {
     pub(super) citation: &'a Citation,
     pub(super) date: &'a str,
-    pub(super) program: &'a [String; 2],
+    pub(super) program: &'a Program,
+    /// Optional features that the program needs for new rows.
+    pub(super) features: &'a BTreeSet<String>,
     /// The machine that made the archive.
     pub(super) here: &'a Machine,
     /// Their sources are paths in the archive.
@@ -44,8 +46,37 @@ pub(super) struct Appendix<'a> {
     pub(super) bytes: u64,
 }
 
+/// Results of experiments that another machine can check.
+const METRICS: &str = "ratios, orders and slopes with intervals; seconds are not compared between machines";
+
 fn megabytes(bytes: u64) -> String {
     format!("{:.1} MB", bytes as f64 / 1e6)
+}
+
+/// Seconds of an estimate.
+fn about(seconds: f64) -> String {
+    if seconds < 1.0 { "less than 1 s".to_string() } else { format!("about {seconds:.0} s") }
+}
+
+/// The tables of other programs that answer claims, by the paths of their rows.
+pub(super) fn tables<'a>(answers: &[Answer<'a>]) -> BTreeMap<PathBuf, &'a PlainRows> {
+    let of = |answer: &Answer<'a>| match Again::of(answer) {
+        Again::Table(table) => answer.sources.iter().map(|source| (source.clone(), table)).collect(),
+        _ => Vec::new(),
+    };
+    answers.iter().flat_map(of).collect()
+}
+
+/// Rows by what measured them.
+pub(super) fn rows_in_words(experiments: usize, tables: usize) -> String {
+    let of_tables = match tables {
+        0 => None,
+        1 => Some("1 table of another program".to_string()),
+        several => Some(format!("{several} tables of other programs")),
+    };
+    let experiments = (experiments > 0).then(|| counted(experiments, "experiment"));
+    let parts: Vec<String> = experiments.into_iter().chain(of_tables).collect();
+    if parts.is_empty() { "rows of hard cases".to_string() } else { format!("rows of {}", parts.join(" and ")) }
 }
 
 /// Texts, each once, in a line.
@@ -65,26 +96,35 @@ impl Appendix<'_> {
             citation.license()
         );
         let parts = [head, self.about(), self.check_list(), self.description(), self.installation(), self.workflow()];
-        let parts = parts.into_iter().chain([self.claims(), self.experiments()]);
-        parts.collect::<Vec<String>>().join("\n\n") + "\n"
+        let parts = parts.into_iter().chain([self.claims(), self.experiments(), self.others()]);
+        parts.filter(|part| !part.is_empty()).collect::<Vec<String>>().join("\n\n") + "\n"
     }
 
     /// The abstract in a sentence, without heading.
     pub(super) fn summary(&self) -> String {
         let titles = distinct(self.answers.iter().map(|answer| answer.report.title.clone()));
         format!(
-            "Measured rows of {}, a ledger of {} ({titles}), and the verdicts that the rows give: {}.",
-            counted(self.experiments.len(), "experiment"),
+            "Measured {}, a ledger of {} ({titles}), and the verdicts that the rows give: {}.",
+            self.rows(),
             counted(self.answers.len(), "claim"),
             totals(self.answers)
         )
     }
 
+    fn rows(&self) -> String {
+        rows_in_words(self.experiments.len(), tables(self.answers).len())
+    }
+
     fn about(&self) -> String {
+        let measures = match (self.experiments.is_empty(), tables(self.answers).is_empty()) {
+            (true, _) => "",
+            (false, true) => ", and measures the rows again",
+            (false, false) => ", and measures those of experiments again",
+        };
         format!(
-            "## Abstract\n\n{} The program `{}` computes the verdicts again from the rows, and measures the rows again.",
+            "## Abstract\n\n{} The program `{}` computes the verdicts again from the rows{measures}.",
             self.summary(),
-            self.program[0]
+            self.program.command
         )
     }
 
@@ -93,47 +133,70 @@ impl Appendix<'_> {
     }
 
     fn check_list(&self) -> String {
-        let (seconds, bytes) = self
-            .costs
-            .values()
-            .flatten()
-            .fold((0.0, 0), |(seconds, bytes), cost| (seconds + cost.plan.seconds(), bytes + cost.plan.bytes));
-        let unknown = self.costs.values().filter(|cost| cost.is_err()).count();
-        let unknown = if unknown == 0 {
+        let has_experiments = !self.experiments.is_empty();
+        let compiled = self.machines(|machine| format!("{}, profile {}", machine.rustc, machine.profile));
+        let system = self.machines(|machine| machine.system.clone());
+        let lines = [
+            ("Program", Some(format!("{} {}", self.program.name, self.program.version))),
+            ("Compilation", Some(compiled).filter(|_| has_experiments)),
+            ("Data set", Some(format!("the {}, in `{ROWS}/`", self.rows()))),
+            ("Run-time environment", Some(system).filter(|_| has_experiments)),
+            ("Hardware", Some(self.hardware())),
+            ("Metrics", Some(METRICS.to_string()).filter(|_| has_experiments)),
+            ("Output", Some(format!("a verdict on each claim, as in `{CLAIMS}` and `{VERDICTS}`"))),
+            ("Disk space", Some(format!("{} here{}", megabytes(self.bytes), self.new_bytes()))),
+            ("Time to prepare", Some("not measured; it is one build of the program".to_string())),
+            ("Time to judge all claims", Some(format!("{:.1} s, measured on {}", self.judge_s, self.here.line()))),
+            ("Time to measure all rows again", Some(self.new_seconds())),
+            (
+                "Program publicly available",
+                Some(self.program.address.unwrap_or("at no address that is known here").to_string()),
+            ),
+            ("Licence of Pathmark", Some(env!("CARGO_PKG_LICENSE").to_string())),
+            ("Licence of the data", Some(self.citation.license())),
+        ];
+        let lines = lines.iter().filter_map(|(name, value)| Some(format!("* **{name}:** {}", value.as_ref()?)));
+        format!("## Check-list\n\n{}", lines.collect::<Vec<String>>().join("\n"))
+    }
+
+    /// The machines of the rows; those of tables as the ledger tells them.
+    fn hardware(&self) -> String {
+        let of =
+            |machine: &Machine| format!("{}, {:.1} GB of memory", machine.line(), machine.memory_bytes as f64 / 1e9);
+        let own = self.experiments.iter().map(|own| of(&own.run.machine));
+        let others = tables(self.answers).into_values().filter_map(|table| table.machine.clone());
+        distinct(own.chain(others))
+    }
+
+    /// Bytes of new rows, where they are known.
+    fn new_bytes(&self) -> String {
+        let own = self.costs.values().flatten().map(|cost| cost.plan.bytes);
+        let others = tables(self.answers).into_values().filter_map(|table| table.bytes);
+        let known: Vec<u64> = own.chain(others).collect();
+        if known.is_empty() {
             String::new()
         } else {
-            format!(", without {} that cannot run there", counted(unknown, "experiment"))
-        };
+            format!(", and about {} for new rows", megabytes(known.iter().sum()))
+        }
+    }
+
+    /// Seconds of new rows, and where they come from.
+    fn new_seconds(&self) -> String {
         let here = self.here.line();
-        let lines = [
-            ("Program", self.program.join(" ")),
-            ("Compilation", self.machines(|machine| format!("{}, profile {}", machine.rustc, machine.profile))),
-            ("Data set", format!("the rows in `{ROWS}/`, of {}", counted(self.experiments.len(), "experiment"))),
-            ("Run-time environment", self.machines(|machine| machine.system.clone())),
-            (
-                "Hardware",
-                self.machines(|machine| {
-                    format!("{}, {:.1} GB of memory", machine.line(), machine.memory_bytes as f64 / 1e9)
-                }),
-            ),
-            (
-                "Metrics",
-                "ratios, orders and slopes with intervals; seconds are not compared between machines".to_string(),
-            ),
-            ("Output", format!("a verdict on each claim, as in `{CLAIMS}` and `{VERDICTS}`")),
-            ("Disk space", format!("{} here, and about {} for new rows", megabytes(self.bytes), megabytes(bytes))),
-            ("Time to prepare", format!("one build of the program, by `cargo install` or by `{CONTAINER}`")),
-            ("Time to judge all claims", format!("{:.1} s, measured on {here}", self.judge_s)),
-            (
-                "Time to measure all rows again",
-                format!("about {seconds:.0} s, estimated by a pilot on {here}{unknown}"),
-            ),
-            ("Publicly available", env!("CARGO_PKG_REPOSITORY").to_string()),
-            ("Licence of the program", env!("CARGO_PKG_LICENSE").to_string()),
-            ("Licence of the data", self.citation.license()),
+        let own: Vec<f64> = self.costs.values().flatten().map(|cost| cost.plan.seconds()).collect();
+        let failed = self.costs.len() - own.len();
+        let tables = tables(self.answers);
+        let others: Vec<f64> = tables.values().filter_map(|table| table.seconds).collect();
+        let untold = tables.len() - others.len();
+        let parts = [
+            (!own.is_empty()).then(|| format!("{}, estimated by a pilot on {here}", about(own.iter().sum()))),
+            (failed > 0).then(|| format!("unknown for {} that cannot run there", counted(failed, "experiment"))),
+            (!others.is_empty())
+                .then(|| format!("{} for rows of other programs, as the ledger tells", about(others.iter().sum()))),
+            (untold > 0).then(|| format!("unknown for {} of other programs", counted(untold, "table"))),
         ];
-        let lines: Vec<String> = lines.iter().map(|(name, value)| format!("* **{name}:** {value}")).collect();
-        format!("## Check-list\n\n{}", lines.join("\n"))
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        if parts.is_empty() { "unknown".to_string() } else { parts.join("; ") }
     }
 
     fn description(&self) -> String {
@@ -143,19 +206,38 @@ impl Appendix<'_> {
         } else {
             format!(" New measurements also need these scene files, which are not here: {}.", left_out.join(", "))
         };
+        let has_experiments = !self.experiments.is_empty();
+        let (own, new) = if has_experiments {
+            (
+                " It has a page, `report.html`, and for each experiment its rows (`records.csv`), its machine \
+                 (`machine.toml`) and its definition (`experiment.toml`).",
+                " New rows of an experiment can only come from a machine with as many processors as the rows used.",
+            )
+        } else {
+            ("", "")
+        };
+        let others = if tables(self.answers).is_empty() { "" } else { " Rows of other programs are there, too." };
         format!(
-            "## Description\n\n`{ROWS}/` has a folder for each run, with a page, `report.html`. In it, each experiment has its rows \
-             (`records.csv`), its machine (`machine.toml`) and its definition (`experiment.toml`). `{LEDGER}/` has the claims: \
-             quotes, queries, predictions and their reasons.{left_out}\n\nThe verdicts need no special hardware or software besides \
-             the program. New rows can only come from a machine with as many processors as the rows used."
+            "## Description\n\n`{ROWS}/` has a folder for each run.{own}{others} `{LEDGER}/` has the claims: quotes, queries, \
+             predictions and their reasons.{left_out}\n\nThe verdicts need no special hardware or software besides the program.{new}"
         )
     }
 
     fn installation(&self) -> String {
+        let Program { name, command, address, .. } = self.program;
+        let commit = Some(&self.here.commit).filter(|commit| *commit != "unknown");
+        let commit = commit.map_or_else(String::new, |commit| format!(", commit {commit},"));
+        let from = address.map_or_else(String::new, |address| format!(" (<{address}>)"));
+        let where_from = if address.is_some() {
+            ""
+        } else {
+            " ADDRESS is that of the sources, which the authors give: none is known here."
+        };
         format!(
-            "## Installation\n\nInstall `{}` as the repository says, or build the container: `podman build --tag artifact .`. \
-             `{CONTAINER}` names the commit and the compiler.",
-            self.program[0]
+            "## Installation\n\nInstall {name} from its sources{from}{commit} by `{}`. The scripts call it `{command}`.\n\n\
+             Or build the container by `{}`: `{CONTAINER}` names the commit and the compiler. It has not been built as a whole.{where_from}",
+            self.program.installing(".", self.features),
+            self.program.building()
         )
     }
 
@@ -196,18 +278,16 @@ impl Appendix<'_> {
             Again::Experiment(folder) => {
                 let cost = match self.costs.get(&folder) {
                     Some(Ok(cost)) => {
-                        format!(
-                            "; about {:.0} s and {} for the experiment",
-                            cost.plan.seconds(),
-                            megabytes(cost.plan.bytes)
-                        )
+                        let (seconds, bytes) = (about(cost.plan.seconds()), megabytes(cost.plan.bytes));
+                        format!("; {seconds} and {bytes} for the experiment")
                     }
                     Some(Err(why)) => format!("; costs are unknown: {why}"),
                     None => String::new(),
                 };
-                format!("`{}`{cost}", measuring(&folder, "../again"))
+                format!("`{}`{cost}", self.program.measuring(&folder, "../again"))
             }
-            Again::HardCases => format!("`{} selftest --out ../again`", self.program[0]),
+            Again::HardCases => format!("`{} selftest --out ../again`", self.program.command),
+            Again::Table(table) => of_table(table),
             Again::Not(why) => why,
         };
         let predicted = Some(answer.predicted()).filter(|predicted| predicted != "-");
@@ -220,7 +300,7 @@ impl Appendix<'_> {
             answer.verdict,
             answer.measured(),
             answer.source().unwrap_or_default(),
-            judging(claim.id)
+            self.program.judging(claim.id)
         )
     }
 
@@ -237,6 +317,23 @@ impl Appendix<'_> {
             format!("* `{}`: {}. {}; `{command}`", own.folder.display(), own.title, facts.join(", "))
         };
         let lines: Vec<String> = self.experiments.iter().map(line).collect();
-        format!("## Experiments\n\n{}", lines.join("\n"))
+        if lines.is_empty() { String::new() } else { format!("## Experiments\n\n{}", lines.join("\n")) }
     }
+
+    /// The rows of other programs.
+    fn others(&self) -> String {
+        let line = |(path, table): (PathBuf, &PlainRows)| format!("* `{}`: {}", path.display(), of_table(table));
+        let lines: Vec<String> = tables(self.answers).into_iter().map(line).collect();
+        if lines.is_empty() { String::new() } else { format!("## Rows of other programs\n\n{}", lines.join("\n")) }
+    }
+}
+
+/// How another program measures rows, as the ledger tells it.
+fn of_table(table: &PlainRows) -> String {
+    let (file, costs) = (&table.file, table.costs());
+    let command = match &table.command {
+        Some(command) => format!("`{command}` writes `{file}`"),
+        None => format!("another program wrote `{file}`; the ledger names no command"),
+    };
+    if costs.is_empty() { command } else { format!("{command}; {costs}, as the ledger tells") }
 }

@@ -2,11 +2,12 @@
 //! check.
 
 use super::citation::{Author, Citation};
+use super::recipes::Program;
 use crate::error::{Error, InputError, Result};
 use crate::input::read_text_up_to;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::fs::{self, File};
 use std::io::Read;
@@ -66,7 +67,7 @@ fn encoding(path: &str) -> &'static str {
 }
 
 /// The text of the list.
-pub(super) fn text(files: &[Listed], citation: &Citation, about: &str, date: &str, program: &[String; 2]) -> String {
+pub(super) fn text(files: &[Listed], citation: &Citation, about: &str, date: &str, program: &Program) -> String {
     let authors: Vec<Value> = citation.authors.iter().enumerate().map(|(at, own)| author(at + 1, own)).collect();
     let licenses = licenses(citation);
     let id_of = |entity: &Value| json!({ "@id": entity["@id"] });
@@ -99,13 +100,11 @@ pub(super) fn text(files: &[Listed], citation: &Citation, about: &str, date: &st
         "mentions": { "@id": "#program" },
         "hasPart": ids(&files),
     });
-    let program = json!({
-        "@id": "#program",
-        "@type": "SoftwareApplication",
-        "name": program[0],
-        "version": program[1],
-        "url": env!("CARGO_PKG_REPOSITORY"),
-    });
+    let Program { name, version, address, .. } = program;
+    let mut program = json!({ "@id": "#program", "@type": "SoftwareApplication", "name": name, "version": version });
+    if let Some(address) = address {
+        program["url"] = json!(address);
+    }
     let graph: Vec<Value> = [head, root, program].into_iter().chain(authors).chain(licenses).chain(files).collect();
     // The context of RO-Crate 1.1 has no word for checksums.
     let context = json!(["https://w3id.org/ro/crate/1.1/context", { "sha256": "http://schema.org/sha256" }]);
@@ -188,6 +187,13 @@ fn place(text: &str, id: &str, value: &str) -> Option<(usize, usize)> {
     Some((text[..at].matches('\n').count() + 1, 1))
 }
 
+fn has_type(entity: &Value, wanted: &str) -> bool {
+    match &entity["@type"] {
+        Value::Array(all) => all.iter().any(|own| own == wanted),
+        own => own == wanted,
+    }
+}
+
 /// The files of a list, each with its identifier.
 fn entities(file: &str, text: &str) -> Result<Vec<(String, Listed)>> {
     let refused = |field: &str, value: &str, problem: &str| InputError::new(field, value, problem);
@@ -198,18 +204,14 @@ fn entities(file: &str, text: &str) -> Result<Vec<(String, Listed)>> {
     let Some(graph) = json["@graph"].as_array() else {
         return Err(refused("@graph", "", "is missing, or is no list").in_file(file, None).into());
     };
-    let text_of = |entity: &Map<String, Value>, key: &str| entity.get(key).and_then(Value::as_str).map(str::to_string);
-    let has_type = |entity: &Map<String, Value>, wanted: &str| match entity.get("@type") {
-        Some(Value::Array(all)) => all.iter().any(|own| own == wanted),
-        Some(own) => own == wanted,
-        None => false,
-    };
-    let (mut found, mut has_root) = (Vec::new(), false);
-    for entity in graph.iter().filter_map(Value::as_object) {
+    let text_of = |entity: &Value, key: &str| entity[key].as_str().map(str::to_string);
+    check_head(file, text, graph)?;
+    let parts = parts(graph);
+    let mut found = Vec::new();
+    for entity in graph.iter().filter(|entity| entity.is_object()) {
         let Some(id) = text_of(entity, "@id") else {
             return Err(refused("@id", "", "is missing in an entity").in_file(file, None).into());
         };
-        has_root |= id == "./" && has_type(entity, "Dataset");
         // Entities with an address are elsewhere.
         if !has_type(entity, "File") || id.contains("://") {
             continue;
@@ -218,6 +220,9 @@ fn entities(file: &str, text: &str) -> Result<Vec<(String, Listed)>> {
             let problem = format!("{problem} (of {id})");
             Error::from(refused(field, value, &problem).in_file(file, place(text, &id, value)))
         };
+        if !parts.contains(id.as_str()) {
+            return Err(wrong("hasPart", "", "lacks a file: no chain of `hasPart` leads to it from ./"));
+        }
         let path =
             decoded(id.trim_start_matches("./")).ok_or_else(|| wrong("@id", &id, "is not the path of a file"))?;
         let sha256 = text_of(entity, "sha256").unwrap_or_default();
@@ -229,10 +234,73 @@ fn entities(file: &str, text: &str) -> Result<Vec<(String, Listed)>> {
         let bytes = size.parse::<u64>().map_err(|_| wrong("contentSize", &size, "is not a number of bytes"))?;
         found.push((id, Listed { path, bytes, sha256: sha256.to_lowercase() }));
     }
-    if !has_root {
-        return Err(refused("@id", "./", "is missing: it is the entity of the archive").in_file(file, None).into());
-    }
     Ok(found)
+}
+
+/// The identifiers that a property of an entity names: one, or those of a list.
+fn ids<'a>(entity: &'a Value, key: &str) -> Vec<&'a str> {
+    let of = |value: &'a Value| value["@id"].as_str();
+    match &entity[key] {
+        Value::Array(all) => all.iter().filter_map(of).collect(),
+        one => of(one).into_iter().collect(),
+    }
+}
+
+/// Checks the entities of the list itself and of the archive, as RO-Crate requires them.
+fn check_head(file: &str, text: &str, graph: &[Value]) -> Result<()> {
+    let entity = |id: &str| graph.iter().find(|entity| entity["@id"] == id);
+    let wrong = |id: &str, field: &str, value: &str, problem: &str| {
+        let error = InputError::new(field, value, format!("{problem} (of {id})"));
+        Err(Error::from(error.in_file(file, place(text, id, value))))
+    };
+    let (Some(head), Some(root)) = (entity(METADATA), entity("./")) else {
+        let id = if entity("./").is_some() { METADATA } else { "./" };
+        let error = InputError::new("@id", id, "is missing: an RO-Crate describes its list and its folder");
+        return Err(error.in_file(file, None).into());
+    };
+    if !has_type(root, "Dataset") {
+        return wrong("./", "@type", "", "is not Dataset");
+    }
+    let conforms = ids(head, "conformsTo");
+    if !conforms.iter().any(|id| id.starts_with("https://w3id.org/ro/crate/1.")) {
+        return wrong(METADATA, "conformsTo", conforms.first().unwrap_or(&""), "names no version of RO-Crate");
+    }
+    if ids(head, "about") != ["./"] {
+        return wrong(METADATA, "about", "", "is not ./");
+    }
+    for key in ["name", "description", "datePublished"] {
+        if root[key].as_str().is_none_or(|text| text.trim().is_empty()) {
+            return wrong("./", key, "", "is missing or empty");
+        }
+    }
+    let date = root["datePublished"].as_str().unwrap_or_default();
+    if !is_date(date) {
+        return wrong("./", "datePublished", date, "does not begin with a date such as 2026-01-31");
+    }
+    for key in ["license", "hasPart"] {
+        if ids(root, key).is_empty() && root[key].as_str().is_none_or(str::is_empty) {
+            return wrong("./", key, "", "is missing or empty");
+        }
+    }
+    Ok(())
+}
+
+/// Whether a text begins with a date of ISO 8601.
+fn is_date(text: &str) -> bool {
+    let fits = |(own, form): (u8, &u8)| if *form == b'0' { own.is_ascii_digit() } else { own == *form };
+    text.get(..10).is_some_and(|date| date.bytes().zip(b"0000-00-00").all(fits))
+}
+
+/// The entities that belong to the archive, directly or by a folder within it.
+fn parts(graph: &[Value]) -> BTreeSet<&str> {
+    let of: BTreeMap<&str, Vec<&str>> =
+        graph.iter().filter_map(|entity| Some((entity["@id"].as_str()?, ids(entity, "hasPart")))).collect();
+    let (mut found, mut rest) = (BTreeSet::new(), vec!["./"]);
+    while let Some(id) = rest.pop() {
+        let own = of.get(id).into_iter().flatten().copied();
+        rest.extend(own.filter(|part| found.insert(*part)));
+    }
+    found
 }
 
 /// Reads a list of files.
@@ -245,9 +313,10 @@ pub fn listed(path: &Path) -> Result<Vec<Listed>> {
 /// `needed`. Returns how many there are.
 pub(super) fn check(archive: &Path, needed: &[&str]) -> Result<usize> {
     let path = archive.join(METADATA);
-    let (file, text) = (path.display().to_string(), read_text_up_to(&path, LARGEST)?);
+    // Before any file is read, because links are refused.
     let mut there = files_below(archive)?;
     there.remove(METADATA);
+    let (file, text) = (path.display().to_string(), read_text_up_to(&path, LARGEST)?);
     let listed = entities(&file, &text)?;
     if let Some(missing) = needed.iter().find(|needed| !listed.iter().any(|(_, own)| own.path == **needed)) {
         return Err(InputError::new("@id", *missing, "is not listed, and every artifact has it")
@@ -282,6 +351,7 @@ pub(super) fn check(archive: &Path, needed: &[&str]) -> Result<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lab::Lab;
 
     #[test]
     fn identifiers_are_paths() {
@@ -298,7 +368,7 @@ mod tests {
     fn lists_are_read_back_and_wrong_ones_refused() {
         let file = Listed { path: "rows/a b.csv".to_string(), bytes: 3, sha256: "0".repeat(64) };
         let citation = Citation::choose(None, &[], None, Path::new("no/such/file")).unwrap();
-        let program = ["pathmark".to_string(), "0".to_string()];
+        let program = Program::of(&Lab::built_in());
         let whole = text(std::slice::from_ref(&file), &citation, "about", "2026-01-31", &program);
         assert_eq!(entities("C", &whole).unwrap(), [("rows/a%20b.csv".to_string(), file)]);
         let said = |text: &str| entities("C", text).unwrap_err().to_string();
@@ -309,5 +379,34 @@ mod tests {
         let line = wrong.lines().position(|line| line.contains("many")).unwrap() + 1;
         assert!(said(&wrong).starts_with(&format!("C:{line}:1: contentSize = many: ")), "{}", said(&wrong));
         assert!(said(&whole.replace(&"0".repeat(64), "00")).contains("sha256 = 00: "));
+
+        // Without a property that RO-Crate requires, or with a wrong one.
+        let with = |id: &str, key: &str, value: Value| {
+            let mut list: Value = serde_json::from_str(&whole).unwrap();
+            let entities = list["@graph"].as_array_mut().unwrap();
+            entities.iter_mut().find(|entity| entity["@id"] == id).unwrap()[key] = value;
+            list.to_string()
+        };
+        for (id, keys) in [
+            (METADATA, &["about", "conformsTo"][..]),
+            ("./", &["@type", "name", "description", "datePublished", "license", "hasPart"]),
+        ] {
+            for key in keys {
+                let told = said(&with(id, key, Value::Null));
+                assert!(told.contains(&format!("{key}: ")) && told.contains(&format!("(of {id})")), "{told}");
+            }
+        }
+        assert!(
+            said(&whole.replace("\"@id\": \"ro-crate-metadata.json\"", "\"@id\": \"x\"")).contains("@id = ro-crate")
+        );
+        assert!(said(&with("./", "datePublished", json!("today"))).contains("datePublished = today: "));
+        let other = json!({ "@id": "https://w3id.org/workflowhub" });
+        assert!(said(&with(METADATA, "conformsTo", other)).contains("conformsTo = https://w3id.org/workflowhub: "));
+        // A file may be part of a folder; one that is part of nothing is refused.
+        let folder = with("./", "hasPart", json!([{ "@id": "#author-1" }]));
+        assert!(said(&folder).contains("hasPart: lacks a file") && said(&folder).contains("(of rows/a%20b.csv)"));
+        let folder =
+            folder.replace("\"@id\":\"#author-1\",", "\"@id\":\"#author-1\",\"hasPart\":{\"@id\":\"rows/a%20b.csv\"},");
+        assert_eq!(entities("C", &folder).unwrap().len(), 1, "{folder}");
     }
 }

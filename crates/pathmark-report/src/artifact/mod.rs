@@ -22,19 +22,20 @@ mod yaml;
 pub use citation::{CITATION, Citation};
 pub use metadata::{Listed, listed};
 
-use crate::claims::{Answer, Listing, Report, Verdict, judge};
+use crate::claims::{Answer, Claim, Listing, Needs, Report, Verdict, judge};
 use crate::csv_file;
 use crate::error::{Error, InputError, Result};
 use crate::experiment::Definition;
 use crate::files::create_folder;
-use crate::input::read_text;
+use crate::input::{locate, read_text};
 use crate::lab::Lab;
 use crate::measure::{Machine, utc_now};
 use crate::results::Results;
 use crate::{PAGE, page};
-use again::{Cost, costs};
+use again::{Again, Cost, costs};
 use appendix::{Appendix, Experiment};
 use metadata::{METADATA, files_below, look_at};
+use recipes::Program;
 use runs::{Run, add_tables, experiments_in, folders_in, plain, runs_of};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -76,7 +77,8 @@ pub struct Written {
 /// An artifact that passed its check.
 pub struct Checked {
     pub files: usize,
-    pub experiments: usize,
+    /// The rows in words.
+    pub rows: String,
     /// A line for each verdict.
     pub verdicts: Vec<String>,
 }
@@ -118,13 +120,9 @@ impl Stated {
 pub fn write(lab: &Arc<Lab>, request: &Request<'_>) -> Result<Written> {
     let Request { archive, folders, ledger, citation } = *request;
     check_new(archive)?;
-    let (reports, texts, listing) = match ledger {
-        None => (Report::all(lab)?, Report::texts(lab).to_vec(), Listing::of_reports()),
-        Some(path) => {
-            let reports = Report::read(path)?;
-            let listing = Listing::of_ledgers(path, &reports);
-            (reports, texts_of(path)?, listing)
-        }
+    let (reports, texts) = match ledger {
+        None => (Report::all(lab)?, Report::texts(lab).to_vec()),
+        Some(path) => (Report::read(path)?, texts_of(path)?),
     };
     let mut runs = runs_of(folders)?;
     let experiments = read_experiments(lab, &runs)?;
@@ -145,28 +143,27 @@ pub fn write(lab: &Arc<Lab>, request: &Request<'_>) -> Result<Written> {
     let begun = Instant::now();
     let mut answers = judge(lab, &reports, &copies)?;
     let judge_s = begun.elapsed().as_secs_f64();
-    writer.put(VERDICTS, &listing.markdown_of(&answers, archive))?;
-    for source in answers.iter_mut().flat_map(|answer| &mut answer.sources) {
-        *source = source.strip_prefix(archive).map_or_else(|_| source.clone(), Path::to_path_buf);
-    }
+    writer.put(VERDICTS, &verdicts(&reports, &answers, archive))?;
+    shorten(&mut answers, archive);
     csv_file::write(&archive.join(CLAIMS), answers.iter().map(Stated::of))?;
 
     let costs = costs(lab, archive, &answers)?;
     let left_out = writer.scenes(costs.values().flatten())?;
-    let (first, here, program) = (first_of(&answers)?, Machine::look(), lab.program());
-    let measure = recipes::measure(first);
-    writer.put(FIRST, &recipes::first(first.claim.id))?;
+    let (first, here, program) = (first_of(&answers)?, Machine::look(), Program::of(lab));
+    let measure = program.measure(first);
+    writer.put(FIRST, &program.first(first.claim.id))?;
     if let Some(script) = &measure {
         writer.put(MEASURE, script)?;
     }
     let commits = experiments.iter().map(|own| own.run.machine.commit.clone()).collect();
     let features = experiments.iter().flat_map(|own| own.features.clone()).collect();
-    writer.put(CONTAINER, &recipes::container(&here, &commits, &features, measure.is_some()))?;
+    writer.put(CONTAINER, &program.container(&here, &commits, &features, measure.is_some()))?;
     writer.put(CITATION, &citation.to_cff(&date))?;
     let appendix = Appendix {
         citation,
         date: &date,
         program: &program,
+        features: &features,
         here: &here,
         answers: &answers,
         first,
@@ -226,7 +223,8 @@ fn first_of<'a, 'b>(answers: &'b [Answer<'a>]) -> Result<&'b Answer<'a>> {
     let is_judged =
         |answer: &Answer<'_>| matches!(answer.verdict, Verdict::Confirmed | Verdict::Refuted | Verdict::Open);
     let with_rows = answers.iter().filter(|answer| !answer.sources.is_empty());
-    let first = with_rows.min_by_key(|answer| (!is_judged(answer), recipes::measure(answer).is_none()));
+    let can_measure = |answer: &Answer<'_>| matches!(Again::of(answer), Again::Experiment(_));
+    let first = with_rows.min_by_key(|answer| (!is_judged(answer), !can_measure(answer)));
     first.ok_or_else(|| InputError::new("ledger", "", "has no claim that the rows of these folders answer").into())
 }
 
@@ -295,6 +293,32 @@ impl Writer<'_> {
     }
 }
 
+/// The text of the verdicts. Before the sources are shortened, because its links lead to them.
+fn verdicts(reports: &[Report], answers: &[Answer<'_>], archive: &Path) -> String {
+    Listing::of_artifact(reports).markdown_of(answers, archive)
+}
+
+/// Replaces the sources of answers by their paths in the archive.
+fn shorten(answers: &mut [Answer<'_>], archive: &Path) {
+    for source in answers.iter_mut().flat_map(|answer| &mut answer.sources) {
+        *source = source.strip_prefix(archive).map_or_else(|_| source.clone(), Path::to_path_buf);
+    }
+}
+
+/// Refuses a ledger that asks for rows outside of the archive, before any is read.
+fn check_paths(ledger: &Path, report: &Report) -> Result<()> {
+    let path_of = |claim: &Claim| match report.needs(claim) {
+        Needs::Experiment(name) => Some(("experiment", name)),
+        Needs::Table(table) => Some(("file", table.file.clone())),
+        Needs::HardCases | Needs::Nothing(_) => None,
+    };
+    let mut paths = report.claims.iter().filter_map(path_of);
+    let Some((field, outside)) = paths.find(|(_, path)| plain(Path::new(path)).is_none()) else { return Ok(()) };
+    let at = locate(&read_text(ledger)?, field, &outside);
+    let error = InputError::new(field, outside, "leads out of the archive").in_file(ledger.display().to_string(), at);
+    Err(error.allowed("relative paths without `..`").into())
+}
+
 /// Checks an archive from elsewhere: its list of files, their checksums, its citation and all rows, and whether these give
 /// the stated verdicts. `claim` selects the verdict that is told; `None` tells all.
 pub fn check(lab: &Arc<Lab>, archive: &Path, claim: Option<u32>) -> Result<Checked> {
@@ -314,9 +338,16 @@ pub fn check(lab: &Arc<Lab>, archive: &Path, claim: Option<u32>) -> Result<Check
             experiments += 1;
         }
     }
-    let reports = Report::read(&archive.join(LEDGER))?;
-    let answers = judge(lab, &reports, &folders)?;
+    let ledger = archive.join(LEDGER);
+    let reports = Report::read(&ledger)?;
+    for (file, report) in Report::files(&ledger)?.iter().zip(&reports) {
+        check_paths(file, report)?;
+    }
+    let mut answers = judge(lab, &reports, &folders)?;
+    let text = verdicts(&reports, &answers, archive);
+    shorten(&mut answers, archive);
     check_stated(lab, archive, &answers)?;
+    check_text(lab, &archive.join(VERDICTS), &text)?;
     let ids = || answers.iter().map(|answer| answer.claim.id);
     if let Some(id) = claim.filter(|id| !ids().any(|own| own == *id)) {
         let known = ids().map(|id| id.to_string()).collect::<Vec<String>>().join(", ");
@@ -324,7 +355,8 @@ pub fn check(lab: &Arc<Lab>, archive: &Path, claim: Option<u32>) -> Result<Check
         return Err(error.allowed(known).into());
     }
     let told = answers.iter().filter(|answer| claim.is_none_or(|id| id == answer.claim.id));
-    Ok(Checked { files, experiments, verdicts: told.map(line).collect() })
+    let rows = appendix::rows_in_words(experiments, appendix::tables(&answers).len());
+    Ok(Checked { files, rows, verdicts: told.map(line).collect() })
 }
 
 fn line(answer: &Answer<'_>) -> String {
@@ -354,11 +386,6 @@ fn check_stated(lab: &Lab, archive: &Path, answers: &[Answer<'_>]) -> Result<()>
     let program = lab.program().join(" ");
     for answer in answers {
         let (id, found) = (answer.claim.id, Stated::of(answer));
-        let outside = answer.sources.iter().find(|source| source.strip_prefix(archive).ok().and_then(plain).is_none());
-        if let Some(source) = outside {
-            let problem = format!("has rows outside of the archive: {}", source.display());
-            return wrong("claim", id.to_string(), problem, None);
-        }
         let Some((line, row)) = stated.remove(&id) else {
             return wrong("claim", id.to_string(), "is in the ledger, and has no line here".to_string(), None);
         };
@@ -366,6 +393,11 @@ fn check_stated(lab: &Lab, archive: &Path, answers: &[Answer<'_>]) -> Result<()>
             ("report", row.report, found.report),
             ("verdict", row.verdict, found.verdict),
             ("measured", row.measured, found.measured),
+            ("predicted", row.predicted, found.predicted),
+            ("rule", row.rule, found.rule),
+            ("runs", row.runs, found.runs),
+            ("rows", row.rows, found.rows),
+            ("says", row.says, found.says),
         ];
         if let Some((field, stated, found)) = pairs.into_iter().find(|(_, stated, found)| stated != found) {
             let problem = format!("claim {id}: the rows give {found}, as {program} computes it");
@@ -376,4 +408,16 @@ fn check_stated(lab: &Lab, archive: &Path, answers: &[Answer<'_>]) -> Result<()>
         None => Ok(()),
         Some((line, row)) => wrong("claim", row.claim.to_string(), "is not in the ledger".to_string(), Some(line)),
     }
+}
+
+/// Compares the text of the verdicts with the one that ledger and rows give.
+fn check_text(lab: &Lab, path: &Path, expected: &str) -> Result<()> {
+    let stated = read_text(path)?;
+    if stated == expected {
+        return Ok(());
+    }
+    let same = stated.lines().zip(expected.lines()).take_while(|(stated, expected)| stated == expected).count();
+    let [stated, expected] = [stated.as_str(), expected].map(|text| text.lines().nth(same).unwrap_or_default());
+    let problem = format!("{} writes: {expected}", lab.program().join(" "));
+    Err(InputError::new("line", stated, problem).in_file(path.display().to_string(), Some((same + 1, 1))).into())
 }

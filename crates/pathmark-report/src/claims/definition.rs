@@ -50,12 +50,12 @@ use std::iter::once;
 use std::path::{Path, PathBuf};
 
 /// The evidence that answers a claim.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Needs<'a> {
     /// Rows of that experiment.
     Experiment(String),
-    /// Rows of another program, in that file.
-    Table(&'a str),
+    /// Rows of another program.
+    Table(&'a PlainRows),
     /// Hard cases or the price list of the guards.
     HardCases,
     /// Nothing that can be measured, and why.
@@ -435,7 +435,7 @@ impl Report {
         match claim.test().map(|test| &test.statistic) {
             Err((_, why)) => Needs::Nothing(why.to_string()),
             Ok(Statistic::OfRows { experiment, .. }) => match self.table(experiment) {
-                Some(table) => Needs::Table(table.file()),
+                Some(table) => Needs::Table(table),
                 None => Needs::Experiment(experiment.clone()),
             },
             Ok(Statistic::Case(_) | Statistic::Guard(_)) => Needs::HardCases,

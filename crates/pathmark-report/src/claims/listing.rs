@@ -138,6 +138,18 @@ impl Listing {
         Self { stem, heading }
     }
 
+    /// The verdicts of an artifact, which keeps no name of a folder of ledgers.
+    pub fn of_artifact(ledgers: &[Report]) -> Self {
+        let heading = match ledgers {
+            [one] => format!("# {}", one.title),
+            _ => {
+                let names: Vec<&str> = ledgers.iter().map(|ledger| ledger.report.as_str()).collect();
+                format!("# The claims of {}", names.join(", "))
+            }
+        };
+        Self { stem: FOLDER.to_string(), heading }
+    }
+
     /// The verdicts as a text whose links begin at this folder.
     pub fn markdown_of(&self, answers: &[Answer<'_>], base: &Path) -> String {
         markdown(&self.heading, answers, base)

@@ -31,6 +31,7 @@ pub use agreement::Agreement;
 pub use definition::{Claim, Needs, Report};
 pub use judge::{Answer, judge};
 pub use listing::{FOLDER, Listing, MARKDOWN, is_markdown, totals};
+pub use plain_rows::PlainRows;
 pub use verdict::Verdict;
 
 use super::page::Section;

@@ -8,6 +8,10 @@
 //! values = ["seconds"]                # columns of measured numbers; an empty field was not measured
 //! repetition = "run"                  # the column of whole numbers that counts repetitions [default: repetition]
 //! pair = "round"                      # the column that counts pairs within a repetition [default: pair, if it is there]
+//! command = "sh measure.sh"           # measures the rows; for plans and appendices, like the next fields
+//! seconds = 400                       # that it takes
+//! bytes = 20000                       # that it writes
+//! machine = "two cores of a Zen 5"    # on which it takes them
 //! ```
 //!
 //! Two more columns are read if the file has them, with the meaning that they have in `records.csv`: `seed`, a whole
@@ -31,16 +35,22 @@ use std::path::{Path, PathBuf};
 struct Wrong(String, String, &'static str, &'static str);
 
 /// A table of rows, as a ledger describes it.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct PlainRows {
+pub struct PlainRows {
     pub(super) name: String,
-    file: String,
+    pub file: String,
     pub(super) settings: Vec<String>,
     values: Vec<String>,
     #[serde(default = "repetition")]
     repetition: String,
     pair: Option<String>,
+    /// The command that measures the rows. Nothing here runs it.
+    pub command: Option<String>,
+    /// Seconds that it takes, bytes that it writes, and the machine of these numbers, all as the ledger tells them.
+    pub seconds: Option<f64>,
+    pub bytes: Option<u64>,
+    pub machine: Option<String>,
 }
 
 fn repetition() -> String {
@@ -58,6 +68,15 @@ impl PlainRows {
             if value.is_empty() {
                 return Err(InputError::new(field, value, "is empty").into());
             }
+        }
+        for (field, value) in [("command", &self.command), ("machine", &self.machine)] {
+            if value.as_ref().is_some_and(|value| value.trim().is_empty() || value.contains(char::is_control)) {
+                let problem = "is empty or contains a control character";
+                return Err(InputError::new(field, value.as_deref().unwrap_or_default(), problem).into());
+            }
+        }
+        if let Some(seconds) = self.seconds.filter(|seconds| !(seconds.is_finite() && *seconds >= 0.0)) {
+            return Err(InputError::new("seconds", seconds.to_string(), "is no time").allowed("0 or more").into());
         }
         let mut seen = BTreeSet::new();
         for (field, column) in self.named() {
@@ -80,8 +99,12 @@ impl PlainRows {
         self.named().map(|(_, column)| column).chain([SEED, STARTED])
     }
 
-    pub(super) fn file(&self) -> &str {
-        &self.file
+    /// The resources of a new measurement in words; empty if the ledger tells none.
+    pub fn costs(&self) -> String {
+        let seconds = self.seconds.map(|seconds| format!("{seconds:.0} s"));
+        let bytes = self.bytes.map(|bytes| format!("{:.1} MB", bytes as f64 / 1e6));
+        let machine = self.machine.as_ref().map(|machine| format!("on {machine}"));
+        [seconds, bytes, machine].into_iter().flatten().collect::<Vec<String>>().join(", ")
     }
 
     pub(super) fn path(&self, folder: &Path) -> PathBuf {

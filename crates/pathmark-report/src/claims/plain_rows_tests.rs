@@ -4,6 +4,7 @@ use super::*;
 use crate::error::Error;
 use std::fmt::Write;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// A ledger on `sorts.csv`, with one claim.
 pub(super) fn ledger(evidence: &str) -> String {
@@ -147,4 +148,49 @@ fn rows_that_are_not_there_are_no_values() {
     assert_eq!(judged(rows, value).unwrap().1, Some(2.0));
     let text = Listing::of_ledgers(&PathBuf::from("s.toml"), &reports).markdown_of(&answers, empty.path());
     assert!(text.starts_with("# Sorting\n") && text.contains("A. Author, 2026, <https://doi.org/10.1/2>"), "{text}");
+}
+
+/// Ledgers that a program adds take the place of the four reports; their numbers and names are unique, too.
+#[test]
+fn a_program_judges_its_own_ledgers() {
+    let value = "statistic = \"value\"\ncolumn = \"seconds\"\nrows = { program = \"quick\", n = 100 }\nat-least = 0.0";
+    let lab =
+        |texts: &[(&str, String)]| Arc::new(texts.iter().fold(Lab::new(), |lab, (name, text)| lab.claims(name, text)));
+    let mine = lab(&[("mine", ledger(value))]);
+    let reports = Report::all(&mine).unwrap();
+    let folder = folder(&sorts());
+    let answers = judge(&mine, &reports, &[folder.path().to_path_buf()]).unwrap();
+    assert_eq!((answers.len(), answers[0].report.title.as_str()), (1, "Sorting"));
+    assert_eq!(answers[0].verdict, Verdict::Confirmed);
+    assert!(section(&mine, folder.path()).unwrap().is_some());
+    for (other, told) in [
+        (ledger(value).replace("\"S\"", "\"R\""), "claims/other.toml: id = 1: "),
+        (ledger(value).replace("id = 1\n", "id = 2\n"), "claims/other.toml: report = S: "),
+    ] {
+        let error = Report::all(&lab(&[("mine", ledger(value)), ("other", other)])).unwrap_err().to_string();
+        assert!(error.starts_with(told), "{error}");
+    }
+}
+
+#[test]
+fn resources_of_tables_are_told_and_checked() {
+    let value = "statistic = \"value\"\ncolumn = \"seconds\"\nat-least = 0.0";
+    let with = |fields: &str| {
+        let text = ledger(value).replace("values = [\"seconds\"]\n", &format!("values = [\"seconds\"]\n{fields}\n"));
+        Report::from_text("s.toml", &text)
+    };
+    let report = with("command = \"sh m.sh\"\nseconds = 12.4\nbytes = 1500000\nmachine = \"a Cray-1\"").unwrap();
+    let Needs::Table(table) = report.needs(&report.claims[0]) else { panic!() };
+    assert_eq!((table.command.as_deref(), table.costs().as_str()), (Some("sh m.sh"), "12 s, 1.5 MB, on a Cray-1"));
+    for (field, told) in [
+        ("seconds = -1.0", "s.toml:11:11: seconds = -1: is no time"),
+        ("seconds = nan", "s.toml:11:"),
+        ("bytes = -1", "s.toml:11:"),
+        ("command = \"\"", "s.toml:11:1: command: is empty"),
+        ("machine = \"a\\nb\"", "s.toml:11:"),
+        ("minutes = 3", "s.toml:11:"),
+    ] {
+        let error = with(field).unwrap_err().to_string();
+        assert!(error.starts_with(told), "{field}: {error}");
+    }
 }

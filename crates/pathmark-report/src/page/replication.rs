@@ -5,7 +5,7 @@ use crate::block::Block;
 use crate::error::Result;
 use crate::experiment::{Kind, REPLICATION, Replication, Reproduction, Statement};
 use crate::page::Section;
-use crate::words::counted;
+use crate::words::{capital, counted};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -66,7 +66,7 @@ pub fn rule(found: &Replication) -> String {
     )
 }
 
-/// Two versions of the program, and the parts that this machine lacks, each with the number of statements.
+/// Two versions of the program, and why there are no rows here, each reason with the number of statements.
 pub fn notices(found: &Replication) -> Vec<String> {
     let of_versions = |[theirs, here]: [&str; 2]| {
         format!(
@@ -74,16 +74,15 @@ pub fn notices(found: &Replication) -> Vec<String> {
              times may come from the program."
         )
     };
-    let mut reasons: BTreeMap<&str, usize> = BTreeMap::new();
-    for own in &found.statements {
-        if let Reproduction::OtherHardware(why) = &own.verdict {
-            *reasons.entry(why).or_default() += 1;
-        }
+    let mut reasons: BTreeMap<&str, BTreeMap<&str, usize>> = BTreeMap::new();
+    for verdict in found.statements.iter().map(|own| &own.verdict).filter(|verdict| !verdict.lacks().is_empty()) {
+        *reasons.entry(verdict.name()).or_default().entry(verdict.lacks()).or_default() += 1;
     }
-    let told = reasons.into_iter().map(|(why, count)| format!("{why} ({})", counted(count, "statement")));
-    let told: Vec<String> = told.collect();
-    let of_hardware = (!told.is_empty()).then(|| format!("Other hardware: {}.", told.join("; ")));
-    found.versions().map(of_versions).into_iter().chain(of_hardware).collect()
+    let lacking = reasons.into_iter().map(|(name, reasons)| {
+        let told = reasons.into_iter().map(|(why, count)| format!("{why} ({})", counted(count, "statement")));
+        format!("{}: {}.", capital(name), told.collect::<Vec<String>>().join("; "))
+    });
+    found.versions().map(of_versions).into_iter().chain(lacking).collect()
 }
 
 /// The statements, those first that are not reproduced.
@@ -107,8 +106,7 @@ pub fn cells(own: &Statement) -> [String; 8] {
         Reproduction::CannotTell(Some(more)) => counted(*more, &format!("more {}", own.kind.unit())),
         Reproduction::CannotTell(None) if own.kind == Kind::Order => "the times here are too close".to_string(),
         Reproduction::CannotTell(None) => "theirs are too few, or the difference lies at the limit".to_string(),
-        Reproduction::OtherHardware(why) => why.clone(),
-        Reproduction::Reproduced | Reproduction::NotReproduced => String::new(),
+        verdict => verdict.lacks().to_string(),
     };
     [
         own.experiment.clone(),
@@ -143,7 +141,7 @@ mod tests {
     }
 
     fn replication() -> Replication {
-        let lacking = Reproduction::OtherHardware("64 threads instead of 2".to_string());
+        let [failed, lacking] = ["no such kernel", "64 threads instead of 2"].map(str::to_string);
         Replication {
             theirs: "results/<b>".to_string(),
             share: 0.1,
@@ -157,7 +155,8 @@ mod tests {
                 statement(Kind::Ratio, Reproduction::Reproduced),
                 statement(Kind::Slope, Reproduction::CannotTell(Some(1))),
                 statement(Kind::Order, Reproduction::NotReproduced),
-                statement(Kind::Image, lacking),
+                statement(Kind::Image, Reproduction::OtherHardware(lacking)),
+                statement(Kind::Image, Reproduction::NotMeasured(failed)),
             ],
         }
     }
@@ -169,12 +168,13 @@ mod tests {
         let path = folder.path().join(REPLICATION);
         replication().write(&path).unwrap();
         let found = section(folder.path()).unwrap().unwrap();
-        let expected = "4 statements of results/<b>: 1 reproduced, 1 other hardware, 1 cannot tell, 1 not reproduced.";
+        let expected = "5 statements of results/<b>: 1 reproduced, 1 other hardware, 1 not measured, 1 cannot tell, 1 not reproduced.";
         assert_eq!((found.in_short.as_deref(), found.blocks[0].as_finding()), (Some(expected), Some(expected)));
         assert!(found.analysis.contains("less than 10 %") && found.analysis.contains("each has 99.99 %"));
         let is_told = |at: usize, said: &str| matches!(&found.blocks[at], Block::Notice(text) if text.contains(said));
         assert!(is_told(1, "a program of abc measured their rows, and one of def those here"));
-        assert!(is_told(2, "64 threads instead of 2 (1 statement)"));
+        assert!(is_told(2, "Not measured: no such kernel (1 statement)."));
+        assert!(is_told(3, "Other hardware: 64 threads instead of 2 (1 statement)."));
         let html = crate::page::html(&[found]).unwrap();
         let place = |text: &str| html.find(text).unwrap_or_else(|| panic!("{text}: {html}"));
         let order = [
@@ -182,6 +182,8 @@ mod tests {
             "data-verdict=\"not reproduced\"",
             "data-verdict=\"cannot tell\"",
             "1 more seed",
+            "data-verdict=\"not measured\"",
+            "no such kernel",
             "data-verdict=\"other hardware\"",
             "data-verdict=\"reproduced\"",
             "The machines side by side",

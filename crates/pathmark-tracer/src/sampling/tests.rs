@@ -8,18 +8,22 @@ pub(super) fn flips_are_independent(scramble: impl Fn(u64, u64) -> u64) {
     const NODES: usize = (1 << LEVELS) - 1;
     const KEYS: u64 = 1 << 20;
     let (mut single, mut double) = ([0_i64; NODES], vec![0_i64; NODES * NODES]);
-    for key in 0..KEYS {
-        let mut flips = [0_i64; NODES];
-        for level in 0..LEVELS {
-            for before in 0..1_u64 << level {
-                let flip = scramble(before, key) >> level & 1;
-                flips[(1 << level) - 1 + before as usize] = 2 * flip as i64 - 1;
+    // A flip counts as 1, none as -1. A word has the flips of 64 keys at a node.
+    let sum = |flips: u64| 2 * i64::from(flips.count_ones()) - 64;
+    for first in (0..KEYS).step_by(64) {
+        let mut flips = [0_u64; NODES];
+        for key in first..first + 64 {
+            for level in 0..LEVELS {
+                for before in 0..1_u64 << level {
+                    let flip = scramble(before, key) >> level & 1;
+                    flips[(1 << level) - 1 + before as usize] |= flip << (key - first);
+                }
             }
         }
         for (a, flip) in flips.iter().enumerate() {
-            single[a] += flip;
-            for (sum, other) in double[a * NODES..].iter_mut().zip(&flips[..a]) {
-                *sum += flip * other;
+            single[a] += sum(*flip);
+            for (total, other) in double[a * NODES..].iter_mut().zip(&flips[..a]) {
+                *total += sum(!(flip ^ other));
             }
         }
     }
