@@ -66,7 +66,7 @@ pub(super) fn why(report: &Report, statistic: &Statistic, evidence: &[&Evidence]
     }
     if evidence.is_empty() {
         return match report.table(experiment) {
-            Some(table) => format!("No judged folder has the file {}.", table.file()),
+            Some(table) => format!("No judged folder has the file {}.", table.file),
             None => format!("No judged folder has rows of {experiment}."),
         };
     }
@@ -80,7 +80,7 @@ pub(super) fn why(report: &Report, statistic: &Statistic, evidence: &[&Evidence]
 pub(super) fn lacking_file(report: &Report, statistic: &Statistic, evidence: &[&Evidence]) -> Option<InputError> {
     let Statistic::OfRows { experiment, .. } = statistic else { return None };
     let index = report.tables.iter().position(|table| table.name == *experiment).filter(|_| evidence.is_empty())?;
-    let error = InputError::new("file", report.tables[index].file(), "is in none of the judged folders")
+    let error = InputError::new("file", &report.tables[index].file, "is in none of the judged folders")
         .allowed("the path of a CSV file within a judged folder, or claims that expect `not-answered`");
     match report.located(Part::Table(index), error.into()) {
         Error::Input(error) => Some(*error),

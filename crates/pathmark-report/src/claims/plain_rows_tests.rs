@@ -164,8 +164,8 @@ fn a_program_judges_its_own_ledgers() {
     assert_eq!(answers[0].verdict, Verdict::Confirmed);
     assert!(section(&mine, folder.path()).unwrap().is_some());
     for (other, told) in [
-        (ledger(value).replace("\"S\"", "\"R\""), "claims/other.toml: id = 1: "),
-        (ledger(value).replace("id = 1\n", "id = 2\n"), "claims/other.toml: report = S: "),
+        (ledger(value).replace("\"S\"", "\"R\""), "claims/other.toml:12:6: id = 1: "),
+        (ledger(value).replace("id = 1\n", "id = 2\n"), "claims/other.toml:1:10: report = S: "),
     ] {
         let error = Report::all(&lab(&[("mine", ledger(value)), ("other", other)])).unwrap_err().to_string();
         assert!(error.starts_with(told), "{error}");
