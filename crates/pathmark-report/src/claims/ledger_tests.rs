@@ -10,7 +10,7 @@ const RATIO: &str = "statistic = \"paired-ratio\"\ncolumn = \"seconds\"\nrows = 
                      over = { program = \"quick\" }\nat-least = 2";
 
 fn refused(text: &str) -> String {
-    Report::from_text("s.toml", text).map(|report| format!("accepted: {report:?}")).unwrap_or_else(|e| e.to_string())
+    Report::from_text("s.toml", text).map_or_else(|error| error.to_string(), |report| format!("accepted: {report:?}"))
 }
 
 /// A text with one part replaced, and the beginning of an error about the first line that begins with `of`.
@@ -156,7 +156,7 @@ fn values_that_no_row_has_are_refused() {
     let [bubbles, quicks] = ["quick", "bubble"].map(|other| {
         let rows = sorts();
         let kept = rows.lines().filter(|line| !line.contains(&format!(",{other},")));
-        folder(&kept.map(|line| format!("{line}\n")).collect::<String>())
+        folder(&kept.flat_map(|line| [line, "\n"]).collect::<String>())
     });
     assert!(answers(RATIO, &[&bubbles], false).unwrap_err().contains("over.program = quick"));
     assert!(answers(RATIO, &[&bubbles, &quicks], false).is_ok());

@@ -302,7 +302,7 @@ mod tests {
     #[test]
     fn the_list_of_fields_is_that_of_the_statistics() {
         let wrong = Statistic::of("no-such", &toml::toml! { experiment = "e" }).unwrap_err().to_string();
-        assert!(FIELDS.iter().all(|(name, _)| wrong.contains(&format!("{name}"))), "{wrong}");
+        assert!(FIELDS.iter().all(|(name, _)| wrong.contains(name)), "{wrong}");
         let count = wrong.split_once("allowed: ").unwrap().1.split(", ").count();
         assert_eq!(count, FIELDS.len(), "{wrong}");
         for (name, own) in FIELDS {
