@@ -217,14 +217,16 @@ fn typing_errors_do_not_pass_a_strict_check() {
     let strict = || finish(pathmark(folder.path(), &["claims", ".", "--ledger", "own.toml", "--strict"]));
     write(&first);
     strict().with_code(0);
-    write(&first.replace("\"bubble 100000\"", "\"buble 100000\""));
-    let error = strict().with_code(2).err;
-    assert!(
-        error.contains("own.toml:29:20: rows.command = buble 100000") && error.contains("bubble 100000, quick"),
-        "{error}"
-    );
-    write(&first.replace("commands.csv\"", "comands.csv\""));
-    assert!(strict().with_code(2).err.contains("own.toml:9:8: file = comands.csv"));
+    let line = |text: &str, what: &str| 1 + text.lines().position(|line| line.contains(what)).unwrap();
+    let wrong = first.replace("\"bubble 100000\"", "\"buble 100000\"");
+    write(&wrong);
+    let (error, place) = (strict().with_code(2).err, line(&wrong, "\"buble"));
+    assert!(error.contains(&format!("own.toml:{place}:20: rows.command = buble 100000")), "{error}");
+    assert!(error.contains("bubble 100000, quick"), "{error}");
+    let wrong = first.replace("commands.csv\"", "comands.csv\"");
+    write(&wrong);
+    let (error, place) = (strict().with_code(2).err, line(&wrong, "comands.csv\""));
+    assert!(error.contains(&format!("own.toml:{place}:8: file = comands.csv")), "{error}");
     // Rows of an experiment may be absent, which `--strict` does not expect.
     let of_experiment = "[[claim]]\nid = 3\nclaim = \"c\"\nexperiment = \"thread-scalin\"\nstatistic = \"value\"\ncolumn = \"spp\"\nlevel = 0.95\n";
     write(&format!("{first}{of_experiment}"));

@@ -101,10 +101,10 @@ pub(super) fn camera_rays(trials: &mut Trials) {
     for (width, height) in [(1024, 768), (1, 1), (7, 300)] {
         let view = cornell.camera.view(width, height);
         let (mut outside, mut long, mut nearest, mut tried) = (0, 0, 0.0_f64, 0);
-        let is_tried = |at: u32, count: u32| at % step == 0 || at + 1 == count;
+        let is_tried = |at: u32, count: u32| at.is_multiple_of(step) || at + 1 == count;
         for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
             let is_border = x == 0 || y == 0 || x + 1 == width || y + 1 == height;
-            if !is_border && !(is_tried(x, width) && is_tried(y, height)) {
+            if !(is_border || is_tried(x, width) && is_tried(y, height)) {
                 continue;
             }
             for (sample, numbers) in (0..4).flat_map(|sample| corners.map(|numbers| (sample, numbers))) {
