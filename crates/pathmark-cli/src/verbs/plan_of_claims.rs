@@ -35,12 +35,11 @@ pub(super) fn plan(lab: &Arc<Lab>, reports: &[Report], folders: &[PathBuf], as_j
                 if !plans.contains_key(&name) {
                     plans.insert(name.clone(), plan_of(lab, &name, folders, &mut prices)?);
                 }
-                match plans.get(&name).cloned().flatten() {
-                    Some((command, plan)) => (command, (Some(plan.seconds()), Some(plan.bytes)), String::new()),
-                    None => {
-                        let why = format!("no experiment is called {name}, and there is no {name}.toml");
-                        (String::new(), (None, None), why)
-                    }
+                if let Some((command, plan)) = plans.get(&name).cloned().flatten() {
+                    (command, (Some(plan.seconds()), Some(plan.bytes)), String::new())
+                } else {
+                    let why = format!("no experiment is called {name}, and there is no {name}.toml");
+                    (String::new(), (None, None), why)
                 }
             }
             Needs::Table(table) => {
