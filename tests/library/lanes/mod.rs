@@ -57,8 +57,8 @@ fn is_for_lanes(scene: &Scene, spec: &Spec) -> bool {
 
 #[test]
 fn every_scene_has_the_scalar_kernels_bits() {
-    let watchdog = Watchdog::new(Duration::from_mins(5));
     const SAMPLERS: [&str; 3] = ["independent", "hash", "sobol"];
+    let watchdog = Watchdog::new(Duration::from_mins(5));
     let (mut compared, mut scenes) = (0, 0);
     let mut next = SAMPLERS.into_iter().cycle();
     for (name, _) in SCENES {
