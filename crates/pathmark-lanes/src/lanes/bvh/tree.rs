@@ -6,6 +6,7 @@ use super::blocks::{Blocks, BlocksBuilder, Leaf};
 use super::coarse::Scale;
 use super::collapse::{Child, CollapsedBvh, Content};
 use super::ray_packet::RayPacket;
+use crate::lanes::MOST_IN_LANES;
 use crate::lanes::rays::LanesOf;
 use crate::simd::{Aligned, Apart, Float, MOST_LANES, Mask, Table, prefetch};
 use pathmark_tracer::scene::{Bounds, Tests};
@@ -26,9 +27,8 @@ pub(super) struct Tree {
 const CACHED: usize = 16 << 20;
 
 pub(super) const IS_LEAF: u32 = 1 << 31;
-/// The bit of a node's number from which on it holds the number of its children. There are fewer nodes than primitives,
-/// and fewer than 2^24 primitives.
-const COUNT: u32 = 24;
+/// The bit of a node's number from which on it holds the number of its children. There are not more nodes than primitives.
+const COUNT: u32 = MOST_IN_LANES.trailing_zeros();
 /// Rows of a node. The last one holds its children.
 pub(super) const ROWS: usize = 7;
 
@@ -264,7 +264,8 @@ impl Tree {
 
 /// Most nodes, one below the other, that may have waiting children.
 const MOST_LEVELS: usize = 110;
-/// Room for the distances of children of as many nodes; on the widest registers there are fewer levels.
+/// Room for the distances of all children of each level: 29 levels of 16 lanes, 58 of 8. The robust search keeps fewer
+/// children than that.
 pub(super) const DISTANCES: usize = 29 * 16;
 
 /// The most levels of nodes with so many children.
@@ -305,7 +306,7 @@ pub(in crate::lanes) struct Stack {
 struct Waiting {
     /// The place of the node's first child.
     first: u32,
-    /// As bits, not 0; lanes whose boxes begin beyond the limit at the time of the last removal are left out.
+    /// As bits, not 0 below `count`; lanes whose boxes begin beyond the limit at the time of the last removal are left out.
     which: u32,
 }
 
@@ -340,6 +341,7 @@ impl Stack {
     #[inline(always)]
     fn push<W: Float<One = f32>>(&mut self, first: u32, enter: W, met: W::Mask) -> usize {
         // There is always room (`is_shallow`); with this explicit bound nothing below is checked.
+        debug_assert!(self.count < most_levels(W::LANES));
         let count = self.count.min(most_levels(W::LANES) - 1);
         enter.store(&mut self.distances[count * W::LANES..][..W::LANES]);
         let nearest = nearest(enter, met);
@@ -388,13 +390,11 @@ mod tests {
     use pathmark_tracer::math::{Ray, Real, Vec3};
     use pathmark_tracer::scene::{Primitive, Primitives, Sphere};
 
-    const DEPTH: usize = 200;
-
-    /// A row of spheres whose boxes are all on the x axis, although the axis meets only the last sphere. Each node
+    /// A row of spheres in a tree of so many levels, whose boxes are all on the x axis, although the axis meets only the last sphere. Each node
     /// holds the last of its spheres and a node with the spheres before. So a ray along the axis visits the last sphere
     /// after everything else.
-    fn row(width: usize) -> (Vec<Sphere>, Vec<Vec<Child>>) {
-        let count = DEPTH * (width - 1);
+    fn row(width: usize, levels: usize) -> (Vec<Sphere>, Vec<Vec<Child>>) {
+        let count = levels * (width - 1);
         let sphere = |k: usize| {
             let beside = if k + 1 < count { 0.9 } else { 0.0 };
             Sphere { center: Vec3::new(10.0 + 3.0 * k as f64, beside, beside), radius: 1.0 }
@@ -405,16 +405,16 @@ mod tests {
             boxes.fold(Bounds::EMPTY, |all, own| all.and(&own))
         };
         let node = |depth: usize| {
-            let end = (DEPTH - depth) * (width - 1);
+            let end = (levels - depth) * (width - 1);
             let first = end - (width - 1);
             let leaf = |k: usize| Child {
                 bounds: around(k..k + 1),
                 content: Content::Primitives { first: k as u32, count: 1 },
             };
             let deeper = Child { bounds: around(0..first), content: Content::Node(depth as u32 + 1) };
-            (first..end).map(leaf).chain((depth + 1 < DEPTH).then_some(deeper)).collect()
+            (first..end).map(leaf).chain((depth + 1 < levels).then_some(deeper)).collect()
         };
-        let nodes = (0..DEPTH).map(node).collect();
+        let nodes = (0..levels).map(node).collect();
         (spheres, nodes)
     }
 
@@ -449,7 +449,7 @@ mod tests {
         }
     }
 
-    struct Along<'a>(&'a Wide);
+    struct Along<'a>(&'a Wide, &'a Table);
 
     impl Work for Along<'_> {
         type Output = (f64, f64);
@@ -459,35 +459,38 @@ mod tests {
             let ray =
                 Ray { origin: Vec3::splat(Vec3::new(0.0, 0.0, 0.0)), direction: Vec3::splat(Vec3::new(1.0, 0.0, 0.0)) };
             let rays = Rays { ray, from: V::splat(-1.0), own_root: V::splat(f64::NAN) };
-            // Without a tree the table of surfaces is not read.
-            let surfaces = Table::new([[0.0; 4]], Precision::F64);
-            let (found, _) = self.0.nearest(&rays, 1, &surfaces, &mut Scratch::new(&mut []), &mut Counts::default());
+            let (Self(wide, surfaces), mut stacks) = (self, Stacks::new());
+            let (found, _) = wide.nearest(&rays, 1, surfaces, &mut Scratch::new(&mut stacks.0), &mut Counts::default());
             (found.nearest.lane(0), found.primitive.lane(0))
         }
     }
 
-    /// If a tree is so deep that more children may wait than there is room for, all primitives are tested.
+    /// In a tree with as many levels as there is room for, the child that waited longest is found. If it is deeper, all
+    /// primitives are tested.
     #[test]
-    fn primitives_beyond_the_stacks_are_tested() {
-        for level in levels() {
-            for precision in Precision::ALL {
-                let Sizes { register, single: width, .. } = sizes_of(level, precision);
-                let (spheres, nodes) = row(width);
+    fn the_last_of_the_waiting_children_is_found() {
+        for (level, precision) in levels().flat_map(|level| Precision::ALL.map(|precision| (level, precision))) {
+            let Sizes { register, single: width, .. } = sizes_of(level, precision);
+            let most = most_levels(width);
+            for depth in [1, most - 1, most, most + 1, 200] {
+                let (spheres, nodes) = row(width, depth);
                 let order: Vec<u32> = (0..spheres.len() as u32).collect();
-                assert!(is_shallow(&CollapsedBvh::new(nodes[DEPTH - 1..].to_vec(), order.clone()), width));
                 let collapsed = CollapsedBvh::new(nodes, order);
-                assert!(!is_shallow(&collapsed, width));
                 let bounds = spheres.iter().filter_map(Primitive::bounds);
                 let scale = Scale::of(&bounds.fold(Bounds::EMPTY, |all, own| all.and(&own)));
+                let row = |Sphere { center, radius }: &Sphere| [center.x, center.y, center.z, *radius];
+                let surfaces = Table::new(spheres.iter().map(row), precision);
+                let last = spheres.len() - 1;
                 let primitives = Primitives { spheres, ..Primitives::default() };
                 let mut builder = BlocksBuilder::new(&primitives, scale, None, [width, register], precision);
                 let search = Search::of(Some(&collapsed), width, scale, &mut builder);
+                let what = format!("{} {precision:?}, {depth} levels", level.name());
+                assert_eq!(matches!(search, Search::Tree(_)), depth <= most, "{what}");
                 let blocks = builder.made();
                 let wide = Wide { large: None, planes: Vec::new(), blocks, search };
-                let last = primitives.spheres.len() - 1;
-                let (distance, number) = on_level(level, precision, Along(&wide));
-                assert_eq!(number, last as f64, "{} {precision:?}", level.name());
-                assert!((distance / (9.0 + 3.0 * number) - 1.0).abs() < 1e-6, "{} {precision:?}", level.name());
+                let (distance, number) = on_level(level, precision, Along(&wide, &surfaces));
+                assert_eq!(number, last as f64, "{what}");
+                assert!((distance / (9.0 + 3.0 * number) - 1.0).abs() < 1e-6, "{what}");
             }
         }
     }
