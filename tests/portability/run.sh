@@ -87,7 +87,7 @@ digest() { if [ -e "$1" ]; then sha256sum <"$1"; else echo "no file"; fi; }
 # The folder of what a program with this compiler has printed. It belongs to the sources: the program itself also differs with each commit.
 folder() {
     local key
-    key=$( (echo "$1" && find src crates experiments Cargo.toml Cargo.lock build.rs -type f -print0 | LC_ALL=C sort -z | xargs -0 sha256sum) | sha256sum)
+    key=$( (echo "$1" && find src crates experiments tests/support Cargo.toml Cargo.lock build.rs -type f -print0 | LC_ALL=C sort -z | xargs -0 sha256sum) | sha256sum)
     echo "$kept/${key:0:12}/$2"
 }
 

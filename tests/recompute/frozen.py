@@ -37,6 +37,9 @@ def main(files):
                 old[file, commit] = claims(shown.stdout) if shown.returncode == 0 else None
             then = old[file, commit]
             if then is None:
+                if git("rev-parse", "--is-shallow-repository").stdout.strip() == "false":
+                    wrong += 1
+                    print(f"{name} names a commit that does not have it: {commit}")
                 continue
             compared += 1
             if then.get(claim["id"]) != now[claim["id"]]:
