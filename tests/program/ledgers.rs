@@ -131,7 +131,7 @@ fn a_plan_tells_the_commands_of_other_programs() {
     assert_eq!((&told[0]["machine"], &told[1]["command"]), (&json!("an invented machine"), &json!("cargo bench")));
     let text = plan(&[]);
     assert!(
-        text.contains("  # 40 s, 0.0 MB, on an invented machine, rows of another program, in commands.csv\n"),
+        text.contains("  # 40 s, 2.0 kB, on an invented machine, rows of another program, in commands.csv\n"),
         "{text}"
     );
     assert!(text.ends_with("2 tables of other programs, as the ledger tells it: 40 s, 1 without a time\n"), "{text}");
@@ -262,5 +262,8 @@ fn a_plan_knows_experiments_of_ones_own() {
     fs::remove_file(folder.path().join("tiny.toml")).unwrap();
     let (command, bytes) = plan(&["none", "out"]);
     assert!(command == "pathmark replicate out/tiny" && bytes > Some(0), "{command}");
+    assert_eq!(plan(&["none"]), (String::new(), None));
+    // A definition that cannot be read is no end of the plan.
+    fs::write(folder.path().join("tiny.toml"), "title = 1\n").unwrap();
     assert_eq!(plan(&["none"]), (String::new(), None));
 }

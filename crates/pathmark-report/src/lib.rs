@@ -25,12 +25,13 @@ mod rows;
 mod serial;
 #[cfg(test)]
 mod tests;
+mod time;
 pub mod timeline;
 mod titles;
 #[cfg(test)]
 mod trace_tests;
 pub mod why;
-mod words;
+pub mod words;
 
 pub use crops::Crop;
 pub use estimated::{Estimated, LEVEL};

@@ -9,6 +9,23 @@ pub fn counted(count: usize, thing: &str) -> String {
     if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
 }
 
+/// Seconds as people estimate them.
+pub fn seconds(seconds: f64) -> String {
+    if seconds < 1.0 { "less than 1 s".to_string() } else { format!("{seconds:.0} s") }
+}
+
+/// Bytes in kB or MB.
+pub fn bytes(bytes: u64) -> String {
+    let bytes = bytes as f64;
+    if bytes < 1e5 { format!("{:.1} kB", bytes / 1e3) } else { format!("{:.1} MB", bytes / 1e6) }
+}
+
+/// The resources of a measurement, as far as they are known, and the machine that they belong to.
+pub fn costs(time: Option<f64>, space: Option<u64>, machine: &str) -> String {
+    let machine = Some(machine).filter(|machine| !machine.is_empty()).map(|machine| format!("on {machine}"));
+    [time.map(seconds), space.map(bytes), machine].into_iter().flatten().collect::<Vec<String>>().join(", ")
+}
+
 /// A text as the beginning of a sentence.
 pub(super) fn capital(text: &str) -> String {
     let mut letters = text.chars();

@@ -3,6 +3,7 @@
 use super::prelude::*;
 use crate::experiment::{Definition, Options, Plan, Prices, Profile, Sweep, Theirs};
 use crate::report::claims::{Needs, Report};
+use crate::report::words;
 use crate::shell;
 use std::collections::BTreeMap;
 
@@ -26,20 +27,23 @@ struct Planned<'a> {
 /// Prints for each claim the command that measures its rows, and what it takes. `folders` are those of rows.
 pub(super) fn plan(lab: &Arc<Lab>, reports: &[Report], folders: &[PathBuf], as_json: bool) -> Result<()> {
     let mut prices = Prices::new(lab);
-    let mut plans: BTreeMap<String, Option<(String, Plan)>> = BTreeMap::new();
+    let mut plans: BTreeMap<String, std::result::Result<(String, Plan), String>> = BTreeMap::new();
     let (mut rows, mut tables) = (Vec::new(), Vec::new());
     for (report, claim) in reports.iter().flat_map(|report| report.claims.iter().map(move |claim| (report, claim))) {
         let mut machine = "";
         let (command, costs, why) = match report.needs(claim) {
             Needs::Experiment(name) => {
                 if !plans.contains_key(&name) {
-                    plans.insert(name.clone(), plan_of(lab, &name, folders, &mut prices)?);
+                    let plan = match plan_of(lab, &name, folders, &mut prices) {
+                        Ok(plan) => Ok(plan),
+                        Err(Error::Input(error)) => Err(error.to_string()),
+                        Err(other) => return Err(other),
+                    };
+                    plans.insert(name.clone(), plan);
                 }
-                if let Some((command, plan)) = plans.get(&name).cloned().flatten() {
-                    (command, (Some(plan.seconds()), Some(plan.bytes)), String::new())
-                } else {
-                    let why = format!("no experiment is called {name}, and there is no {name}.toml");
-                    (String::new(), (None, None), why)
+                match &plans[&name] {
+                    Ok((command, plan)) => (command.clone(), (Some(plan.seconds()), Some(plan.bytes)), String::new()),
+                    Err(why) => (String::new(), (None, None), why.clone()),
                 }
             }
             Needs::Table(table) => {
@@ -63,13 +67,9 @@ pub(super) fn plan(lab: &Arc<Lab>, reports: &[Report], folders: &[PathBuf], as_j
     }
     let line = |row: &Planned<'_>| {
         let how = if row.command.is_empty() { format!("- {}", row.why) } else { row.command.clone() };
-        let more = [
-            row.seconds.map(|seconds| format!("{seconds:.0} s")),
-            row.bytes.map(|bytes| format!("{:.1} MB", bytes as f64 / 1e6)),
-            Some(row.machine).filter(|machine| !machine.is_empty()).map(|machine| format!("on {machine}")),
-            Some(row.why.clone()).filter(|why| !why.is_empty() && !row.command.is_empty()),
-        ];
-        let more = more.into_iter().flatten().collect::<Vec<String>>().join(", ");
+        let why = Some(row.why.clone()).filter(|_| !row.command.is_empty()).unwrap_or_default();
+        let more = [words::costs(row.seconds, row.bytes, row.machine), why];
+        let more = more.into_iter().filter(|part| !part.is_empty()).collect::<Vec<String>>().join(", ");
         let more = if more.is_empty() { more } else { format!("  # {more}") };
         format!("{:>3} {}  {}\n        {how}{more}", row.claim, row.report, row.says)
     };
@@ -81,12 +81,12 @@ pub(super) fn plan(lab: &Arc<Lab>, reports: &[Report], folders: &[PathBuf], as_j
     let experiments = plans.values().flatten().count();
     if experiments > 0 {
         let of = counted(experiments, "experiment");
-        print(&format!("\n{of}, each run once: about {seconds:.0} s, {:.0} MB", bytes as f64 / 1e6))?;
+        print(&format!("\n{of}, each run once: {}", words::costs(Some(seconds), Some(bytes), "")))?;
     }
     if !tables.is_empty() {
         let told: Vec<f64> = tables.iter().filter_map(|table| table.seconds).collect();
         let (of, untold) = (counted(tables.len(), "table"), tables.len() - told.len());
-        let seconds = (!told.is_empty()).then(|| format!("{:.0} s", told.iter().sum::<f64>()));
+        let seconds = (!told.is_empty()).then(|| words::costs(Some(told.iter().sum()), None, ""));
         let untold = (untold > 0).then(|| format!("{untold} without a time"));
         let told = [seconds, untold].into_iter().flatten().collect::<Vec<String>>().join(", ");
         print(&format!("\n{of} of other programs, as the ledger tells it: {told}"))?;
@@ -94,30 +94,27 @@ pub(super) fn plan(lab: &Arc<Lab>, reports: &[Report], folders: &[PathBuf], as_j
     Ok(())
 }
 
-/// The command that measures an experiment, and its plan; `None` if there is no such experiment. It is one of the program,
-/// that of rows in these folders, or that of a definition in the current folder.
-fn plan_of(lab: &Arc<Lab>, name: &str, folders: &[PathBuf], prices: &mut Prices<'_>) -> Result<Option<(String, Plan)>> {
+/// The command that measures an experiment, and its plan. The experiment is one of the program, that of rows in these
+/// folders, or that of a definition in the current folder.
+fn plan_of(lab: &Arc<Lab>, name: &str, folders: &[PathBuf], prices: &mut Prices<'_>) -> Result<(String, Plan)> {
     let file = format!("{name}.toml");
     let is_known = Definition::known(lab).any(|(known, _)| known == name);
     let measured = folders.iter().map(|folder| folder.join(name)).find(|own| own.join("experiment.toml").is_file());
-    let (definition, profile, out, command) = match measured.filter(|_| !is_known) {
-        Some(folder) => {
-            let Theirs { definition, profile, .. } = Theirs::read(lab, &folder)?;
-            (definition, profile, folder.join("again"), vec!["replicate".to_string(), folder.display().to_string()])
-        }
-        None if is_known || Path::new(&file).is_file() => {
-            let asked: &str = if is_known { name } else { &file };
-            let definition = Definition::load(lab, asked)?;
-            // The reports' size is that of the claims.
-            let mut sizes = [Profile::Reports, Profile::Quick, Profile::Full].into_iter();
-            let profile = sizes.find(|profile| definition.has(*profile)).unwrap_or_default();
-            let size = format!("--{}", profile.name());
-            (definition, profile, PathBuf::from("out"), vec!["run".to_string(), asked.to_string(), size])
-        }
-        None => return Ok(None),
-    };
+    if let Some(folder) = measured.filter(|_| !is_known) {
+        let plan = Theirs::read(lab, &folder)?.plan(&folder, prices)?;
+        return Ok((shell::command(["replicate", &folder.display().to_string()]), plan));
+    }
+    if !is_known && !Path::new(&file).is_file() {
+        let problem = format!("no experiment is called so, and there is no {file}");
+        return Err(InputError::new("experiment", name, problem).into());
+    }
+    let asked = if is_known { name } else { &file };
+    let definition = Definition::load(lab, asked)?;
+    // The reports' size is that of the claims.
+    let mut sizes = [Profile::Reports, Profile::Quick, Profile::Full].into_iter();
+    let profile = sizes.find(|profile| definition.has(*profile)).unwrap_or_default();
     // Nothing is written there.
-    let options = Options { out, profile, ..Options::default() };
+    let options = Options { out: PathBuf::from("out"), profile, ..Options::default() };
     let plan = Sweep::new(&definition, &options, &mut Files::default())?.plan(prices)?;
-    Ok(Some((shell::command(command.iter().map(String::as_str)), plan)))
+    Ok((shell::command(["run", asked, &format!("--{}", profile.name())]), plan))
 }

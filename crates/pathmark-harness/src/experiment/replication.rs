@@ -8,7 +8,7 @@ use super::records_file::read_records;
 use super::statements::{Evidence, JOINT_LEVEL, Kind, Reproduction, Statement, Unjudged, judge_together};
 use super::together::Schedules;
 use super::turns::turns;
-use super::{Cell, Definition, MACHINE, Profile, RunFile, packed_rows, read_run_file};
+use super::{Cell, Definition, MACHINE, Options, Plan, Prices, Profile, RunFile, Sweep, packed_rows, read_run_file};
 use crate::analysis::adjacent_pairs::{FEWEST_PROCESSES, by_process, log_ratio};
 use crate::analysis::confidence_sequence::Stopping;
 use crate::analysis::equivalence::Measured;
@@ -18,6 +18,7 @@ use crate::analysis::ranking::ratios_in_pairs;
 use crate::analysis::slope::exponent;
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
+use crate::files::Files;
 use crate::input::read_text;
 use crate::lab::Lab;
 use crate::measure::{ImageKey, Machine, Record, SETTINGS, Setting, available_threads};
@@ -87,6 +88,17 @@ impl Theirs {
         let experiment = &self.definition.name;
         let both = Both { experiment, cells: &cells, theirs: theirs?, here: here?, share, absent: &absent };
         Ok(Statements(both.statements(&pairs)))
+    }
+
+    /// The plan of a measurement here; `folder` is that of the rows.
+    pub fn plan(&self, folder: &Path, prices: &mut Prices<'_>) -> Result<Plan> {
+        let Self { definition, profile, .. } = self;
+        if let Some((_, takes)) = definition.missing_feature() {
+            return Err(InputError::new("requires", &definition.name, format!("needs {takes}")).into());
+        }
+        // Nothing is written there.
+        let options = Options { out: folder.join("again"), profile: *profile, ..Options::default() };
+        Sweep::new(definition, &options, &mut Files::default())?.plan(prices)
     }
 
     /// The statement that none of it can be measured here, with its verdict.

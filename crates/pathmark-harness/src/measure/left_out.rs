@@ -18,11 +18,11 @@ impl Record {
     pub(crate) fn lacks(&self) -> Option<String> {
         if self.lacks_device() {
             let kernel = &self.kernel;
-            return Some(format!("of the kernel {kernel}: neither CUDA nor OpenCL finds a GPU on this machine"));
+            return Some(format!("kernel {kernel}: neither CUDA nor OpenCL finds a GPU on this machine"));
         }
         self.has(&Warning::NoProgram).then(|| match self.ranks {
-            Some(_) => "of several processes: there is no launcher such as mpiexec on this machine".to_string(),
-            None => format!("of {}: its program is not on this machine", self.estimator),
+            Some(_) => "several processes: there is no launcher such as mpiexec on this machine".to_string(),
+            None => format!("{}: its program is not on this machine", self.estimator),
         })
     }
 
@@ -63,7 +63,7 @@ impl LeftOut {
     /// A line for each reason: the number of rows, and what they lack.
     pub fn lines(&self) -> impl Iterator<Item = String> {
         let rows = |count: usize| if count == 1 { "1 row".to_string() } else { format!("{count} rows") };
-        self.by_reason.iter().map(move |(reason, count)| format!("{} {reason}", rows(*count)))
+        self.by_reason.iter().map(move |(reason, count)| format!("{} of {reason}", rows(*count)))
     }
 }
 

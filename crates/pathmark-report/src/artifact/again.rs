@@ -1,9 +1,8 @@
 //! How the rows of a claim are measured again, and the estimated costs.
 
 use crate::claims::{Answer, Needs, PlainRows};
-use crate::error::{Error, InputError, Result};
-use crate::experiment::{Options, Plan, Prices, Sweep, Theirs};
-use crate::files::Files;
+use crate::error::{Error, Result};
+use crate::experiment::{Plan, Prices, Theirs};
 use crate::lab::Lab;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -65,13 +64,8 @@ pub(super) fn costs(lab: &Arc<Lab>, archive: &Path, answers: &[Answer<'_>]) -> R
 }
 
 fn cost(lab: &Arc<Lab>, folder: &Path, prices: &mut Prices<'_>) -> Result<Cost> {
-    let Theirs { definition, profile, .. } = Theirs::read(lab, folder)?;
-    if let Some((_, takes)) = definition.missing_feature() {
-        return Err(InputError::new("requires", &definition.name, format!("needs {takes}")).into());
-    }
-    // Nothing is written there.
-    let options = Options { out: folder.join("again"), profile, ..Options::default() };
-    let plan = Sweep::new(&definition, &options, &mut Files::default())?.plan(prices)?;
-    let scenes = definition.cells(profile)?.into_iter().flat_map(|cell| cell.scene.files).collect();
+    let theirs = Theirs::read(lab, folder)?;
+    let plan = theirs.plan(folder, prices)?;
+    let scenes = theirs.definition.cells(theirs.profile)?.into_iter().flat_map(|cell| cell.scene.files).collect();
     Ok(Cost { plan, scenes })
 }

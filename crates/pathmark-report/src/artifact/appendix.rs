@@ -8,7 +8,7 @@ use super::{CLAIMS, CONTAINER, FIRST, LEDGER, MEASURE, ROWS, VERDICTS};
 use crate::claims::{Answer, PlainRows, totals};
 use crate::experiment::RunFile;
 use crate::measure::Machine;
-use crate::words::counted;
+use crate::words::{bytes, counted, seconds};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -48,15 +48,6 @@ pub(super) struct Appendix<'a> {
 
 /// Results of experiments that another machine can check.
 const METRICS: &str = "ratios, orders and slopes with intervals; seconds are not compared between machines";
-
-fn megabytes(bytes: u64) -> String {
-    format!("{:.1} MB", bytes as f64 / 1e6)
-}
-
-/// Seconds of an estimate.
-fn about(seconds: f64) -> String {
-    if seconds < 1.0 { "less than 1 s".to_string() } else { format!("about {seconds:.0} s") }
-}
 
 /// The tables of other programs that answer claims, by the paths of their rows.
 pub(super) fn tables<'a>(answers: &[Answer<'a>]) -> BTreeMap<PathBuf, &'a PlainRows> {
@@ -144,9 +135,9 @@ impl Appendix<'_> {
             ("Hardware", Some(self.hardware())),
             ("Metrics", Some(METRICS.to_string()).filter(|_| has_experiments)),
             ("Output", Some(format!("a verdict on each claim, as in `{CLAIMS}` and `{VERDICTS}`"))),
-            ("Disk space", Some(format!("{} here{}", megabytes(self.bytes), self.new_bytes()))),
+            ("Disk space", Some(format!("{} here{}", bytes(self.bytes), self.new_bytes()))),
             ("Time to prepare", Some("not measured; it is one build of the program".to_string())),
-            ("Time to judge all claims", Some(format!("{:.1} s, measured on {}", self.judge_s, self.here.line()))),
+            ("Time to judge all claims", Some(format!("{}, measured on {}", seconds(self.judge_s), self.here.line()))),
             ("Time to measure all rows again", Some(self.new_seconds())),
             (
                 "Program publicly available",
@@ -173,11 +164,7 @@ impl Appendix<'_> {
         let own = self.costs.values().flatten().map(|cost| cost.plan.bytes);
         let others = tables(self.answers).into_values().filter_map(|table| table.bytes);
         let known: Vec<u64> = own.chain(others).collect();
-        if known.is_empty() {
-            String::new()
-        } else {
-            format!(", and about {} for new rows", megabytes(known.iter().sum()))
-        }
+        if known.is_empty() { String::new() } else { format!(", and about {} for new rows", bytes(known.iter().sum())) }
     }
 
     /// Seconds of new rows, and where they come from.
@@ -189,10 +176,10 @@ impl Appendix<'_> {
         let others: Vec<f64> = tables.values().filter_map(|table| table.seconds).collect();
         let untold = tables.len() - others.len();
         let parts = [
-            (!own.is_empty()).then(|| format!("{}, estimated by a pilot on {here}", about(own.iter().sum()))),
+            (!own.is_empty()).then(|| format!("{}, estimated by a pilot on {here}", seconds(own.iter().sum()))),
             (failed > 0).then(|| format!("unknown for {} that cannot run there", counted(failed, "experiment"))),
             (!others.is_empty())
-                .then(|| format!("{} for rows of other programs, as the ledger tells", about(others.iter().sum()))),
+                .then(|| format!("{} for rows of other programs, as the ledger tells", seconds(others.iter().sum()))),
             (untold > 0).then(|| format!("unknown for {} of other programs", counted(untold, "table"))),
         ];
         let parts: Vec<String> = parts.into_iter().flatten().collect();
@@ -209,7 +196,7 @@ impl Appendix<'_> {
         let has_experiments = !self.experiments.is_empty();
         let (own, new) = if has_experiments {
             (
-                " It has a page, `report.html`, and for each experiment its rows (`records.csv`), its machine \
+                " Each has a page, `report.html`, and for each experiment its rows (`records.csv`), its machine \
                  (`machine.toml`) and its definition (`experiment.toml`).",
                 " New rows of an experiment can only come from a machine with as many processors as the rows used.",
             )
@@ -278,7 +265,7 @@ impl Appendix<'_> {
             Again::Experiment(folder) => {
                 let cost = match self.costs.get(&folder) {
                     Some(Ok(cost)) => {
-                        let (seconds, bytes) = (about(cost.plan.seconds()), megabytes(cost.plan.bytes));
+                        let (seconds, bytes) = (seconds(cost.plan.seconds()), bytes(cost.plan.bytes));
                         format!("; {seconds} and {bytes} for the experiment")
                     }
                     Some(Err(why)) => format!("; costs are unknown: {why}"),

@@ -5,6 +5,7 @@ use super::citation::{Author, Citation};
 use super::recipes::Program;
 use crate::error::{Error, InputError, Result};
 use crate::input::read_text_up_to;
+use crate::time::is_date;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
@@ -274,7 +275,7 @@ fn check_head(file: &str, text: &str, graph: &[Value]) -> Result<()> {
         }
     }
     let date = root["datePublished"].as_str().unwrap_or_default();
-    if !is_date(date) {
+    if !date.get(..10).is_some_and(is_date) {
         return wrong("./", "datePublished", date, "does not begin with a date such as 2026-01-31");
     }
     for key in ["license", "hasPart"] {
@@ -283,12 +284,6 @@ fn check_head(file: &str, text: &str, graph: &[Value]) -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// Whether a text begins with a date of ISO 8601.
-fn is_date(text: &str) -> bool {
-    let fits = |(own, form): (u8, &u8)| if *form == b'0' { own.is_ascii_digit() } else { own == *form };
-    text.get(..10).is_some_and(|date| date.bytes().zip(b"0000-00-00").all(fits))
 }
 
 /// The entities that belong to the archive, directly or by a folder within it.

@@ -22,12 +22,12 @@ mod yaml;
 pub use citation::{CITATION, Citation};
 pub use metadata::{Listed, listed};
 
-use crate::claims::{Answer, Claim, Listing, Needs, Report, Verdict, judge};
+use crate::claims::{Answer, Listing, Report, Verdict, judge, one_line};
 use crate::csv_file;
 use crate::error::{Error, InputError, Result};
 use crate::experiment::Definition;
 use crate::files::create_folder;
-use crate::input::{locate, read_text};
+use crate::input::read_text;
 use crate::lab::Lab;
 use crate::measure::{Machine, utc_now};
 use crate::results::Results;
@@ -110,7 +110,7 @@ impl Stated {
             runs: answer.in_runs(),
             rows: answer.source().unwrap_or_default(),
             // Each claim has one line.
-            says: answer.claim.claim.split_whitespace().collect::<Vec<&str>>().join(" "),
+            says: one_line(&answer.claim.claim),
         }
     }
 }
@@ -139,6 +139,8 @@ pub fn write(lab: &Arc<Lab>, request: &Request<'_>) -> Result<Written> {
     for (name, text) in &texts {
         writer.put(&format!("{LEDGER}/{name}.toml"), text)?;
     }
+    // As the check will read them: in the order of their files, and as somebody's own.
+    let reports = Report::read(&archive.join(LEDGER))?;
     let copies: Vec<PathBuf> = runs.iter().map(|run| archive.join(ROWS).join(&run.name)).collect();
     let begun = Instant::now();
     let mut answers = judge(lab, &reports, &copies)?;
@@ -305,20 +307,6 @@ fn shorten(answers: &mut [Answer<'_>], archive: &Path) {
     }
 }
 
-/// Refuses a ledger that asks for rows outside of the archive, before any is read.
-fn check_paths(ledger: &Path, report: &Report) -> Result<()> {
-    let path_of = |claim: &Claim| match report.needs(claim) {
-        Needs::Experiment(name) => Some(("experiment", name)),
-        Needs::Table(table) => Some(("file", table.file.clone())),
-        Needs::HardCases | Needs::Nothing(_) => None,
-    };
-    let mut paths = report.claims.iter().filter_map(path_of);
-    let Some((field, outside)) = paths.find(|(_, path)| plain(Path::new(path)).is_none()) else { return Ok(()) };
-    let at = locate(&read_text(ledger)?, field, &outside);
-    let error = InputError::new(field, outside, "leads out of the archive").in_file(ledger.display().to_string(), at);
-    Err(error.allowed("relative paths without `..`").into())
-}
-
 /// Checks an archive from elsewhere: its list of files, their checksums, its citation and all rows, and whether these give
 /// the stated verdicts. `claim` selects the verdict that is told; `None` tells all.
 pub fn check(lab: &Arc<Lab>, archive: &Path, claim: Option<u32>) -> Result<Checked> {
@@ -338,11 +326,8 @@ pub fn check(lab: &Arc<Lab>, archive: &Path, claim: Option<u32>) -> Result<Check
             experiments += 1;
         }
     }
-    let ledger = archive.join(LEDGER);
-    let reports = Report::read(&ledger)?;
-    for (file, report) in Report::files(&ledger)?.iter().zip(&reports) {
-        check_paths(file, report)?;
-    }
+    let reports = Report::read(&archive.join(LEDGER))?;
+    reports.iter().try_for_each(Report::check_paths)?;
     let mut answers = judge(lab, &reports, &folders)?;
     let text = verdicts(&reports, &answers, archive);
     shorten(&mut answers, archive);

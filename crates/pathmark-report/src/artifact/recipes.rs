@@ -68,7 +68,7 @@ impl Program {
         Some(format!(
             "#!/bin/sh\n# Measures the rows of claim {} again and judges the claim by them. The argument is a folder for the new rows,\n\
              # from the folder of this script.\nset -eu\ncd \"$(dirname \"$0\")\"\nout=${{1:-../again}}\n\
-             # Code 1 says that a ratio or an image differs, or that none could be judged; REPLICATION.md names it.\n{} || [ $? -eq 1 ]\n\
+             # Code 1 says that a statement is not reproduced, or that none could be judged; REPLICATION.md has them.\n{} || [ $? -eq 1 ]\n\
              {} \"$out\" {}\n",
             answer.claim.id,
             self.measuring(&folder, "\"$out\""),

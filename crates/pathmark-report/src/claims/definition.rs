@@ -38,16 +38,16 @@ use super::condition::{Conditions, known_columns};
 use super::places::{Part, place};
 use super::plain_rows::PlainRows;
 use super::statistic::{OF_PLAIN_ROWS, Statistic, fields_of, is_field_of_any};
-use super::time::{FORM, is_time};
 use super::verdict::{NAMES, Verdict};
 use crate::error::{Error, InputError, Result};
 use crate::experiment;
 use crate::input::{parse, read_text};
 use crate::lab::Lab;
+use crate::time::{FORM, is_time};
 use serde::Deserialize;
 use std::collections::BTreeSet;
 use std::iter::once;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// The evidence that answers a claim.
 #[derive(Debug, Clone, PartialEq)]
@@ -417,6 +417,22 @@ impl Report {
         Ok(files)
     }
 
+    /// Refuses rows outside of the folders that are judged, before any is read.
+    pub(crate) fn check_paths(&self) -> Result<()> {
+        let tables = self.tables.iter().enumerate().map(|(index, own)| (Part::Table(index), "file", own.file.clone()));
+        let of_claim = |(index, claim)| match self.needs(claim) {
+            Needs::Experiment(name) => Some((Part::Claim(index), "experiment", name)),
+            Needs::Table(_) | Needs::HardCases | Needs::Nothing(_) => None,
+        };
+        let mut paths = tables.chain(self.claims.iter().enumerate().filter_map(of_claim));
+        let is_outside = |path: &str| {
+            Path::new(path).components().any(|part| !matches!(part, Component::Normal(_) | Component::CurDir))
+        };
+        let Some((part, field, outside)) = paths.find(|(_, _, path)| is_outside(path)) else { return Ok(()) };
+        let error = InputError::new(field, outside, "leads out of the archive").allowed("relative paths without `..`");
+        Err(self.located(part, error.into()))
+    }
+
     /// The ledgers that a program added to its lab, or else the four reports. Their numbers and letters must be unique.
     pub fn all(lab: &Lab) -> Result<Vec<Self>> {
         let texts = Self::texts(lab).iter();
@@ -489,9 +505,9 @@ fn ledgers_in(folder: &Path) -> Result<Vec<PathBuf>> {
 mod tests {
     use super::*;
 
-    /// The list has the fields that a claim reads, and only those.
+    /// A claim reads each field of the list.
     #[test]
-    fn the_list_of_fields_is_that_of_claims() {
+    fn a_claim_reads_the_listed_fields() {
         for field in FIELDS {
             let values = ["1", "\"a\"", "true", "[1, 2]", "{}"].map(|value| format!("{field} = {value}\n"));
             let of_claim = |own: &String| {

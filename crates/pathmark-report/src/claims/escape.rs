@@ -20,7 +20,7 @@ pub(super) fn quotation(text: &str) -> String {
 }
 
 /// A text with its white space as single spaces.
-pub(super) fn one_line(text: &str) -> String {
+pub(crate) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<&str>>().join(" ")
 }
 

@@ -10,7 +10,6 @@ use super::measure::{Evidence, Item, Query, measure};
 use super::measurement::Measurement;
 use super::places::Part as Place;
 use super::statistic::{Cases, GuardColumn, GuardValue, Statistic};
-use super::time::is_time;
 use super::verdict::Verdict;
 use crate::cases_file::{self, CaseRow};
 use crate::error::InputError;
@@ -18,6 +17,7 @@ use crate::experiment::{MACHINE, has_records, read_run_file, records_path};
 use crate::guard_prices::{self, PriceRow, read_prices};
 use crate::lab::Lab;
 use crate::prelude::*;
+use crate::time::is_time;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

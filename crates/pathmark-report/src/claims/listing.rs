@@ -131,21 +131,13 @@ impl Listing {
     pub fn of_ledgers(path: &Path, ledgers: &[Report]) -> Self {
         let name = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
         let stem = name.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
-        let heading = match ledgers {
-            [one] => format!("# {}", one.title.trim()),
-            _ => format!("# The claims of {stem}"),
-        };
-        Self { stem, heading }
+        Self { heading: heading(ledgers, &stem), stem }
     }
 
     /// The verdicts of an artifact, which keeps no name of a folder of ledgers.
     pub fn of_artifact(ledgers: &[Report]) -> Self {
         let names: Vec<&str> = ledgers.iter().map(|ledger| ledger.report.as_str()).collect();
-        let heading = match ledgers {
-            [one] => format!("# {}", one.title),
-            _ => format!("# The claims of {}", names.join(", ")),
-        };
-        Self { stem: FOLDER.to_string(), heading }
+        Self { heading: heading(ledgers, &names.join(", ")), stem: FOLDER.to_string() }
     }
 
     /// The verdicts as a text whose links begin at this folder.
@@ -280,6 +272,14 @@ fn table(stem: &'static str, answers: &[Answer<'_>]) -> Block {
         .column("frozen", |a| a.claim.frozen_utc().to_string())
         .column("age", |a| a.age().to_string())
         .end()
+}
+
+/// The heading of a ledger, or of several with this name.
+fn heading(ledgers: &[Report], several: &str) -> String {
+    match ledgers {
+        [one] => format!("# {}", one.title.trim()),
+        _ => format!("# The claims of {several}"),
+    }
 }
 
 /// Whether a file is such a text, which a new one may replace.

@@ -21,7 +21,6 @@ mod plain_rows_tests;
 mod statistic;
 #[cfg(test)]
 mod tests;
-mod time;
 #[cfg(test)]
 mod unit_tests;
 mod verdict;
@@ -33,6 +32,8 @@ pub use judge::{Answer, judge};
 pub use listing::{FOLDER, Listing, MARKDOWN, is_markdown, totals};
 pub use plain_rows::PlainRows;
 pub use verdict::Verdict;
+
+pub(crate) use escape::one_line;
 
 use super::page::Section;
 use crate::error::Result;

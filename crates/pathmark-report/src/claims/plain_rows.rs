@@ -18,11 +18,12 @@
 //! number, and `started_utc`, a time such as 2026-01-31T12:00:00Z. Both may be empty. Other columns are ignored.
 
 use super::condition::Columns;
-use super::time::{FORM, is_time};
 use crate::error::{Error, InputError, Result};
 use crate::measure::{Record, ScheduleKey};
 use crate::rows::Row;
 use crate::schedule::Schedule;
+use crate::time::{FORM, is_time};
+use crate::words;
 use csv::StringRecord;
 use serde::Deserialize;
 use serde_json::Value;
@@ -101,10 +102,7 @@ impl PlainRows {
 
     /// The resources of a new measurement in words; empty if the ledger tells none.
     pub fn costs(&self) -> String {
-        let seconds = self.seconds.map(|seconds| format!("{seconds:.0} s"));
-        let bytes = self.bytes.map(|bytes| format!("{:.1} MB", bytes as f64 / 1e6));
-        let machine = self.machine.as_ref().map(|machine| format!("on {machine}"));
-        [seconds, bytes, machine].into_iter().flatten().collect::<Vec<String>>().join(", ")
+        words::costs(self.seconds, self.bytes, self.machine.as_deref().unwrap_or_default())
     }
 
     pub(super) fn path(&self, folder: &Path) -> PathBuf {
