@@ -8,13 +8,13 @@ use crate::prelude::*;
 pub const ENTRY: Entry = Entry {
     threads: Threads::Library,
     ..Entry::new("early-return", "threads share a counter", Discipline::ONE_BY_ONE, |blueprint| {
-        Pool::make(blueprint, run)
+        each_run(blueprint, run)
     })
 };
 
-fn run(pool: &Pool, jobs: usize, job: &Job) -> Result<(), StrategyError> {
+fn run(pool: &Blueprint, jobs: usize, job: &Job) -> Result<(), StrategyError> {
     let (next, panics) = (Arc::new(AtomicUsize::new(0)), Arc::new(Panics::default()));
-    for _ in 0..pool.threads.min(jobs) {
+    for _ in 0..pool.workers(jobs) {
         let (next, panics, job) = (Arc::clone(&next), Arc::clone(&panics), Arc::clone(job));
         thread::spawn(move || {
             while let Some(index) = take(&next, jobs) {

@@ -9,18 +9,19 @@ pub mod short_handed;
 pub mod stuck_queue;
 pub mod swallowed_panic;
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Duration;
 
 use pathmark_strategy::contract::{Contract, Promise, Violation};
-use pathmark_strategy::{Blueprint, Entry, Job, Spawner, Strategy, StrategyError};
+use pathmark_strategy::{Blueprint, Entry};
 
 /// Everything that a pool of the exercises uses.
 pub mod prelude {
-    pub use crate::{Pool, take, verify_mended};
-    pub use pathmark_strategy::{ChunkRule, Discipline, Entry, Job, Panics, StrategyError, Threads};
+    pub use crate::{on_threads, take, verify_mended};
+    pub use pathmark_strategy::{
+        Blueprint, ChunkRule, Discipline, Entry, Job, Panics, StrategyError, Threads, each_run,
+    };
     pub use std::collections::VecDeque;
     pub use std::sync::atomic::{AtomicUsize, Ordering};
     pub use std::sync::{Arc, Mutex, PoisonError, mpsc};
@@ -41,42 +42,18 @@ pub const EXERCISES: [(Entry, Promise); 6] = [
     (short_handed::ENTRY, Promise::Refusals),
 ];
 
-/// A pool whose runs are a function: all that an exercise has to write.
-pub struct Pool {
-    pub threads: usize,
-    pub spawner: Arc<dyn Spawner>,
-    run: Run,
-}
-
-/// Calls the job once for each index below the number of jobs.
-pub type Run = fn(&Pool, usize, &Job) -> Result<(), StrategyError>;
-
-impl Pool {
-    /// Makes a pool with these runs.
-    pub fn make(blueprint: &Blueprint, run: Run) -> Result<Box<dyn Strategy>, StrategyError> {
-        let Blueprint { threads, spawner, .. } = blueprint;
-        Ok(Box::new(Self { threads: threads.get(), spawner: Arc::clone(spawner), run }))
-    }
-
-    /// Runs `work` on each of its threads, but on no more than there are jobs, and waits for all.
-    pub fn on_threads(&self, jobs: usize, work: impl Fn() + Sync) {
-        thread::scope(|scope| {
-            for _ in 0..self.threads.min(jobs) {
-                scope.spawn(&work);
-            }
-        });
-    }
+/// Runs `work` on each of the pool's threads, but on no more than there are jobs, and waits for all.
+pub fn on_threads(pool: &Blueprint, jobs: usize, work: impl Fn() + Sync) {
+    thread::scope(|scope| {
+        for _ in 0..pool.workers(jobs) {
+            scope.spawn(&work);
+        }
+    });
 }
 
 /// Takes the next job from a counter that threads share.
 pub fn take(next: &AtomicUsize, jobs: usize) -> Option<usize> {
     Some(next.fetch_add(1, Ordering::Relaxed)).filter(|index| *index < jobs)
-}
-
-impl Strategy for Pool {
-    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
-        (self.run)(self, jobs, &job)
-    }
 }
 
 /// Tests the contract. Some faults use up the patience, so it is shorter than usual.
@@ -88,7 +65,7 @@ pub fn verify(entry: &Entry) -> Result<(), Vec<Violation>> {
 #[macro_export]
 macro_rules! verify_mended {
     ($exercise:ident, $run:expr) => {{
-        let make = |blueprint: &pathmark_strategy::Blueprint| $crate::Pool::make(blueprint, $run);
+        let make = |blueprint: &pathmark_strategy::Blueprint| pathmark_strategy::each_run(blueprint, $run);
         pathmark_strategy::contract::verify(&pathmark_strategy::Entry { make, ..$crate::$exercise::ENTRY }).unwrap();
     }};
 }

@@ -12,13 +12,13 @@ pub const ENTRY: Entry = Entry {
         "lost-job",
         "threads take four jobs at a time",
         Discipline::Chunks(ChunkRule { size: |_| CHUNK, parameter: 1 }),
-        |blueprint| Pool::make(blueprint, run),
+        |blueprint| each_run(blueprint, run),
     )
 };
 
-fn run(pool: &Pool, jobs: usize, job: &Job) -> Result<(), StrategyError> {
+fn run(pool: &Blueprint, jobs: usize, job: &Job) -> Result<(), StrategyError> {
     let (next, panics) = (AtomicUsize::new(0), Panics::default());
-    pool.on_threads(jobs, || {
+    on_threads(pool, jobs, || {
         loop {
             let start = next.fetch_add(CHUNK, Ordering::Relaxed);
             if start + CHUNK > jobs {

@@ -7,13 +7,13 @@ use crate::prelude::*;
 pub const ENTRY: Entry = Entry {
     threads: Threads::Library,
     ..Entry::new("one-at-a-time", "threads take jobs from a queue with a lock", Discipline::ONE_BY_ONE, |blueprint| {
-        Pool::make(blueprint, run)
+        each_run(blueprint, run)
     })
 };
 
-fn run(pool: &Pool, jobs: usize, job: &Job) -> Result<(), StrategyError> {
+fn run(pool: &Blueprint, jobs: usize, job: &Job) -> Result<(), StrategyError> {
     let (queue, panics) = (Mutex::new((0..jobs).collect::<VecDeque<_>>()), Panics::default());
-    pool.on_threads(jobs, || {
+    on_threads(pool, jobs, || {
         while let Some(index) = queue.lock().unwrap_or_else(PoisonError::into_inner).pop_front() {
             panics.attempt(|| job(index));
         }

@@ -6,14 +6,13 @@
 
 use crate::prelude::*;
 
-pub const ENTRY: Entry = Entry::new("short-handed", "threads share a counter", Discipline::ONE_BY_ONE, |blueprint| {
-    Pool::make(blueprint, run)
-});
+pub const ENTRY: Entry =
+    Entry::new("short-handed", "threads share a counter", Discipline::ONE_BY_ONE, |blueprint| each_run(blueprint, run));
 
-fn run(pool: &Pool, jobs: usize, job: &Job) -> Result<(), StrategyError> {
+fn run(pool: &Blueprint, jobs: usize, job: &Job) -> Result<(), StrategyError> {
     let (next, panics) = (Arc::new(AtomicUsize::new(0)), Arc::new(Panics::default()));
     let mut threads = Vec::new();
-    for worker in 0..pool.threads.min(jobs) {
+    for worker in 0..pool.workers(jobs) {
         let (next, panics, job) = (Arc::clone(&next), Arc::clone(&panics), Arc::clone(job));
         let work = move || {
             while let Some(index) = take(&next, jobs) {

@@ -7,16 +7,16 @@ use crate::prelude::*;
 pub const ENTRY: Entry = Entry {
     threads: Threads::Library,
     ..Entry::new("stuck-queue", "threads take jobs from a channel", Discipline::ONE_BY_ONE, |blueprint| {
-        Pool::make(blueprint, run)
+        each_run(blueprint, run)
     })
 };
 
-fn run(pool: &Pool, jobs: usize, job: &Job) -> Result<(), StrategyError> {
+fn run(pool: &Blueprint, jobs: usize, job: &Job) -> Result<(), StrategyError> {
     let (sender, receiver) = mpsc::sync_channel(100);
     let (queue, panics) = (Mutex::new(receiver), Panics::default());
     (0..jobs).try_for_each(|index| sender.send(index)).expect("the receiver lives");
     drop(sender);
-    pool.on_threads(jobs, || {
+    on_threads(pool, jobs, || {
         loop {
             let next = queue.lock().unwrap_or_else(PoisonError::into_inner).recv();
             let Ok(index) = next else { break };

@@ -8,11 +8,11 @@ use crate::prelude::*;
 pub const ENTRY: Entry = Entry {
     threads: Threads::Library,
     ..Entry::new("swallowed-panic", "threads share a counter", Discipline::ONE_BY_ONE, |blueprint| {
-        Pool::make(blueprint, run)
+        each_run(blueprint, run)
     })
 };
 
-fn run(pool: &Pool, jobs: usize, job: &Job) -> Result<(), StrategyError> {
+fn run(pool: &Blueprint, jobs: usize, job: &Job) -> Result<(), StrategyError> {
     let next = Arc::new(AtomicUsize::new(0));
     let start = |_| {
         let (next, job) = (Arc::clone(&next), Arc::clone(job));
@@ -22,7 +22,7 @@ fn run(pool: &Pool, jobs: usize, job: &Job) -> Result<(), StrategyError> {
             }
         })
     };
-    let threads: Vec<_> = (0..pool.threads.min(jobs)).map(start).collect();
+    let threads: Vec<_> = (0..pool.workers(jobs)).map(start).collect();
     for thread in threads {
         thread.join().ok();
     }

@@ -38,6 +38,13 @@ pub struct Blueprint {
     pub spawner: Arc<dyn Spawner>,
 }
 
+impl Blueprint {
+    /// Returns the number of workers for so many jobs.
+    pub fn workers(&self, jobs: usize) -> usize {
+        self.threads.get().min(jobs)
+    }
+}
+
 /// A source of threads; a test can use one that runs out of threads.
 pub trait Spawner: Send + Sync {
     /// Starts a thread called `name` that runs `body`.

@@ -1,8 +1,8 @@
 //! Entries of the strategy table.
 
 use crate::{
-    Blueprint, ChunkRule, Config, Deal, Discipline, Handout, LearnedRule, Strategy, StrategyError, dealt, learning,
-    self_scheduling,
+    Blueprint, ChunkRule, Config, Deal, Discipline, Handout, Job, LearnedRule, Strategy, StrategyError, dealt,
+    learning, self_scheduling,
 };
 
 /// A strategy's entry in the table: its name, its promises, and the function that makes it.
@@ -10,20 +10,16 @@ use crate::{
 /// [`Entry::new`] and [`Entry::chunks`] set the fields that most strategies share; set the other fields by name:
 ///
 /// ```
-/// use pathmark_strategy::{Discipline, Entry, Job, Strategy, StrategyError, Workers, contract};
+/// use pathmark_strategy::{Blueprint, Discipline, Entry, Job, StrategyError, Workers, contract, each_run};
 ///
-/// struct Mine;
-///
-/// impl Strategy for Mine {
-///     fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
-///         (0..jobs).for_each(|index| job(index));
-///         Ok(())
-///     }
+/// fn run(_: &Blueprint, jobs: usize, job: &Job) -> Result<(), StrategyError> {
+///     (0..jobs).for_each(|index| job(index));
+///     Ok(())
 /// }
 ///
 /// const ENTRY: Entry = Entry {
 ///     workers: Workers::Caller,
-///     ..Entry::new("mine", "all jobs on the calling thread", Discipline::InOrder, |_| Ok(Box::new(Mine)))
+///     ..Entry::new("mine", "all jobs on the calling thread", Discipline::InOrder, |blueprint| each_run(blueprint, run))
 /// };
 /// contract::verify(&ENTRY).expect("it keeps the contract");
 /// ```
@@ -45,6 +41,22 @@ pub struct Entry {
     pub parameter: Option<Parameter>,
     /// Makes a strategy that is ready to run; pools start their threads here.
     pub make: fn(&Blueprint) -> Result<Box<dyn Strategy>, StrategyError>,
+}
+
+/// Calls the job once for each index below the number of jobs, as [`Strategy::run`] does.
+pub type Run = fn(&Blueprint, usize, &Job) -> Result<(), StrategyError>;
+
+/// Makes a strategy that keeps nothing between its runs, as most do that start their threads in each.
+pub fn each_run(blueprint: &Blueprint, run: Run) -> Result<Box<dyn Strategy>, StrategyError> {
+    struct EachRun(Blueprint, Run);
+
+    impl Strategy for EachRun {
+        fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
+            (self.1)(&self.0, jobs, &job)
+        }
+    }
+
+    Ok(Box::new(EachRun(blueprint.clone(), run)))
 }
 
 /// A parameter of a strategy that a user may set.
@@ -87,18 +99,20 @@ impl Entry {
     /// contract::verify(&halves).expect("whatever the sizes, the contract holds");
     /// ```
     pub const fn chunks(name: &'static str, about: &'static str, size: fn(&Handout) -> usize) -> Self {
-        Self::new(name, about, Discipline::Chunks(ChunkRule { size, parameter: 1 }), self_scheduling::make)
+        Self::new(name, about, Discipline::Chunks(ChunkRule { size, parameter: 1 }), |blueprint| {
+            each_run(blueprint, self_scheduling::run)
+        })
     }
 
     /// Returns the entry of a self-scheduling strategy whose workers read the clock. Chunk sizes depend on the measured
     /// speeds. Threads start in each run.
     pub const fn learned(name: &'static str, about: &'static str, rule: LearnedRule) -> Self {
-        Self::new(name, about, Discipline::Learned(rule), learning::make)
+        Self::new(name, about, Discipline::Learned(rule), |blueprint| each_run(blueprint, learning::run))
     }
 
     /// Returns the entry of a strategy whose workers know their jobs before they start. Threads start in each run.
     pub const fn dealt(name: &'static str, about: &'static str, deal: Deal) -> Self {
-        Self::new(name, about, Discipline::Dealt(deal), dealt::make)
+        Self::new(name, about, Discipline::Dealt(deal), |blueprint| each_run(blueprint, dealt::run))
     }
 
     /// Returns the discipline for the text after the colon in `--strategy name:parameter`. An invalid parameter is an

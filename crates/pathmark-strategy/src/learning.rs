@@ -8,40 +8,28 @@ use std::time::Instant;
 use crate::ledger::{Clock, LearnedRule, Ledger, Seen};
 use crate::panics::Panics;
 use crate::sync::Mutex;
-use crate::{Blueprint, Discipline, Job, Strategy, StrategyError, team};
+use crate::{Blueprint, Discipline, Job, StrategyError, team};
 
-/// Makes a strategy whose discipline is a learned rule.
-pub(crate) fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
-    match blueprint.discipline {
-        Discipline::Learned(rule) => Ok(Box::new(Learning { blueprint: blueprint.clone(), rule })),
-        other => unreachable!("{} hands out jobs by {other:?}", blueprint.strategy),
-    }
-}
-
-struct Learning {
-    blueprint: Blueprint,
-    rule: LearnedRule,
-}
-
-impl Strategy for Learning {
-    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
-        let (rule, workers) = (self.rule, self.blueprint.threads.get().min(jobs));
-        let ledger = Arc::new(Mutex::new(Ledger::new(jobs, workers, rule.weights)));
-        let bodies = (0..workers).map(|worker| {
-            let (job, ledger) = (Arc::clone(&job), Arc::clone(&ledger));
-            move |panics: &Panics| {
-                let mut seen = Seen::default();
-                while !panics.stop_asked() {
-                    let Some(chunk) = next(&ledger, rule, worker, seen) else { break };
-                    seen = match rule.clock {
-                        Clock::Chunks => timed_whole(chunk, panics, &*job),
-                        Clock::Jobs => timed_each(chunk, panics, &*job),
-                    };
-                }
+pub(crate) fn run(blueprint: &Blueprint, jobs: usize, job: &Job) -> Result<(), StrategyError> {
+    let Discipline::Learned(rule) = blueprint.discipline else {
+        unreachable!("{} hands out jobs by {:?}", blueprint.strategy, blueprint.discipline)
+    };
+    let workers = blueprint.workers(jobs);
+    let ledger = Arc::new(Mutex::new(Ledger::new(jobs, workers, rule.weights)));
+    let bodies = (0..workers).map(|worker| {
+        let (job, ledger) = (Arc::clone(job), Arc::clone(&ledger));
+        move |panics: &Panics| {
+            let mut seen = Seen::default();
+            while !panics.stop_asked() {
+                let Some(chunk) = next(&ledger, rule, worker, seen) else { break };
+                seen = match rule.clock {
+                    Clock::Chunks => timed_whole(chunk, panics, &*job),
+                    Clock::Jobs => timed_each(chunk, panics, &*job),
+                };
             }
-        });
-        team::run(&*self.blueprint.spawner, bodies)
-    }
+        }
+    });
+    team::run(&*blueprint.spawner, bodies)
 }
 
 /// Returns the next chunk. The lock is released on return, so no job runs under it.

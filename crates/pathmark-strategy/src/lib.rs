@@ -60,7 +60,7 @@ use std::sync::Arc;
 
 pub use config::{Blueprint, Config, Spawner, SystemThreads};
 pub use discipline::{Amount, ChunkRule, Deal, Discipline, Handout, Start, Stealing, Victim};
-pub use entry::{Entry, Parameter, Sharing, Threads, Workers};
+pub use entry::{Entry, Parameter, Run, Sharing, Threads, Workers, each_run};
 pub use error::StrategyError;
 pub use host::Host;
 pub use ledger::{Clock, LearnedRule, Ledger, Seen, Weights};

@@ -12,33 +12,25 @@ use std::sync::Arc;
 
 use crate::locked_queue::LockedQueue;
 use crate::panics::Panics;
-use crate::{Blueprint, Discipline, Entry, Job, Strategy, StrategyError, team};
+use crate::{Blueprint, Discipline, Entry, Job, StrategyError, each_run, team};
 
 pub(super) const ENTRY: Entry = Entry::new(
     "mutex-queue",
     "a free worker takes the next index from a queue behind one lock",
     Discipline::ONE_BY_ONE,
-    make,
+    |blueprint| each_run(blueprint, run),
 );
 
-fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
-    Ok(Box::new(MutexQueue(blueprint.clone())))
-}
-
-struct MutexQueue(Blueprint);
-
-impl Strategy for MutexQueue {
-    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
-        let queue = Arc::new(LockedQueue::new(jobs));
-        let bodies = (0..self.0.threads.get().min(jobs)).map(|_| {
-            let (job, queue) = (Arc::clone(&job), Arc::clone(&queue));
-            move |panics: &Panics| {
-                while !panics.stop_asked() {
-                    let Some(index) = queue.take() else { break };
-                    job(index);
-                }
+fn run(blueprint: &Blueprint, jobs: usize, job: &Job) -> Result<(), StrategyError> {
+    let queue = Arc::new(LockedQueue::new(jobs));
+    let bodies = (0..blueprint.workers(jobs)).map(|_| {
+        let (job, queue) = (Arc::clone(job), Arc::clone(&queue));
+        move |panics: &Panics| {
+            while !panics.stop_asked() {
+                let Some(index) = queue.take() else { break };
+                job(index);
             }
-        });
-        team::run(&*self.0.spawner, bodies)
-    }
+        }
+    });
+    team::run(&*blueprint.spawner, bodies)
 }

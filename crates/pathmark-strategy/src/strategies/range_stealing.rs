@@ -13,7 +13,7 @@ use crate::panics::Panics;
 use crate::ranges::Ranges;
 use crate::taken::Taken;
 use crate::{
-    Amount, Blueprint, Discipline, Entry, Job, Parameter, Start, Stealing, Strategy, StrategyError, Victim, team,
+    Amount, Blueprint, Discipline, Entry, Job, Parameter, Start, Stealing, StrategyError, Victim, each_run, team,
 };
 
 /// The texts allowed after the colon.
@@ -34,7 +34,7 @@ pub(super) const fn entry(
     let stealing = Stealing { start: Start::Blocks, amount, victim: Victim::Neighbour };
     Entry {
         parameter: Some(Parameter { allowed: "neighbour, random, richest", read }),
-        ..Entry::new(name, about, Discipline::Stealing(stealing), make)
+        ..Entry::new(name, about, Discipline::Stealing(stealing), |blueprint| each_run(blueprint, run))
     }
 }
 
@@ -44,41 +44,29 @@ pub(super) fn discipline(amount: Amount, victim: &str) -> Option<Discipline> {
     Some(Discipline::Stealing(Stealing { start: Start::Blocks, amount, victim }))
 }
 
-fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
-    match blueprint.discipline {
-        Discipline::Stealing(stealing) => Ok(Box::new(RangeStealing { blueprint: blueprint.clone(), stealing })),
-        other => unreachable!("{} hands out jobs by {other:?}", blueprint.strategy),
+fn run(blueprint: &Blueprint, jobs: usize, job: &Job) -> Result<(), StrategyError> {
+    let Discipline::Stealing(Stealing { amount, victim, .. }) = blueprint.discipline else {
+        unreachable!("{} hands out jobs by {:?}", blueprint.strategy, blueprint.discipline)
+    };
+    if jobs > MOST {
+        return Err(StrategyError::TooManyJobs { strategy: blueprint.strategy, jobs, most: MOST });
     }
-}
-
-struct RangeStealing {
-    blueprint: Blueprint,
-    stealing: Stealing,
-}
-
-impl Strategy for RangeStealing {
-    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
-        if jobs > MOST {
-            return Err(StrategyError::TooManyJobs { strategy: self.blueprint.strategy, jobs, most: MOST });
+    let workers = blueprint.workers(jobs);
+    let blocks = (0..workers).map(|worker| {
+        let Range { start, end } = block(worker, workers, jobs);
+        start as u32..end as u32
+    });
+    let shared = Arc::new((Ranges::new(blocks), Taken::new(jobs, workers)));
+    let bodies = (0..workers).map(|worker| {
+        let (job, shared) = (Arc::clone(job), Arc::clone(&shared));
+        move |panics: &Panics| {
+            let (ranges, taken) = &*shared;
+            let mut thief = Thief::new(worker, amount, victim);
+            let next = || ranges.pop(worker).or_else(|| thief.steal(ranges)).map(|index| index as usize);
+            taken.work(worker, panics, next, &*job);
         }
-        let workers = self.blueprint.threads.get().min(jobs);
-        let blocks = (0..workers).map(|worker| {
-            let Range { start, end } = block(worker, workers, jobs);
-            start as u32..end as u32
-        });
-        let shared = Arc::new((Ranges::new(blocks), Taken::new(jobs, workers)));
-        let Stealing { amount, victim, .. } = self.stealing;
-        let bodies = (0..workers).map(|worker| {
-            let (job, shared) = (Arc::clone(&job), Arc::clone(&shared));
-            move |panics: &Panics| {
-                let (ranges, taken) = &*shared;
-                let mut thief = Thief::new(worker, amount, victim);
-                let next = || ranges.pop(worker).or_else(|| thief.steal(ranges)).map(|index| index as usize);
-                taken.work(worker, panics, next, &*job);
-            }
-        });
-        team::run(&*self.blueprint.spawner, bodies)
-    }
+    });
+    team::run(&*blueprint.spawner, bodies)
 }
 
 /// A worker whose own range is empty.

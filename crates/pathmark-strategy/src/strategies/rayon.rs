@@ -10,28 +10,17 @@
 
 use ::rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 
-use super::rayon_pool::Pool;
-use crate::{Blueprint, Discipline, Entry, Job, Strategy, StrategyError};
+use super::rayon_pool::in_pool;
+use crate::{Discipline, Entry, Job, Panics};
 
 pub(super) const ENTRY: Entry = Entry::new(
     "rayon",
     "rayon's parallel iterator in its own pool, split down to single jobs",
     Discipline::Halving,
-    make,
+    |blueprint| in_pool(blueprint, run),
 );
 
-fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
-    Ok(Box::new(Rayon(Pool::new(blueprint)?)))
-}
-
-struct Rayon(Pool);
-
-impl Strategy for Rayon {
-    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
-        self.0.run(|panics| {
-            let leaf = |index| panics.attempt(|| job(index));
-            (0..jobs).into_par_iter().with_max_len(1).for_each(leaf);
-        });
-        Ok(())
-    }
+fn run(panics: &Panics, jobs: usize, job: &Job) {
+    let leaf = |index| panics.attempt(|| job(index));
+    (0..jobs).into_par_iter().with_max_len(1).for_each(leaf);
 }

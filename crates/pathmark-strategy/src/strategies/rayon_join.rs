@@ -13,24 +13,13 @@ use std::ops::Range;
 
 use ::rayon::join;
 
-use super::rayon_pool::Pool;
-use crate::{Blueprint, Discipline, Entry, Job, Strategy, StrategyError};
+use super::rayon_pool::in_pool;
+use crate::{Discipline, Entry};
 
 pub(super) const ENTRY: Entry =
-    Entry::new("rayon-join", "rayon's join, halving the jobs down to single ones", Discipline::Halving, make);
-
-fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
-    Ok(Box::new(RayonJoin(Pool::new(blueprint)?)))
-}
-
-struct RayonJoin(Pool);
-
-impl Strategy for RayonJoin {
-    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
-        self.0.run(|panics| halve(0..jobs, &|index| panics.attempt(|| job(index))));
-        Ok(())
-    }
-}
+    Entry::new("rayon-join", "rayon's join, halving the jobs down to single ones", Discipline::Halving, |blueprint| {
+        in_pool(blueprint, |panics, jobs, job| halve(0..jobs, &|index| panics.attempt(|| job(index))))
+    });
 
 /// Runs the jobs of a range, whose two halves may run on two workers.
 fn halve(range: Range<usize>, leaf: &(impl Fn(usize) + Sync)) {

@@ -6,13 +6,33 @@ use ::rayon::{ThreadPool, ThreadPoolBuilder, max_num_threads};
 
 use crate::panics::Panics;
 use crate::team::Crew;
-use crate::{Blueprint, StrategyError};
+use crate::{Blueprint, Job, Strategy, StrategyError};
 
 /// A pool and its threads. Fields are dropped in this order: dropping the pool ends the threads without waiting for
 /// them, then the crew joins them.
 pub(super) struct Pool {
     pool: ThreadPool,
     _crew: Crew,
+}
+
+/// Calls the job once for each index below the number of jobs, on the workers of the pool that calls this.
+pub(super) type InPool = fn(&Panics, usize, &Job);
+
+/// Makes a strategy with its own pool, whose runs are a function.
+pub(super) fn in_pool(blueprint: &Blueprint, run: InPool) -> Result<Box<dyn Strategy>, StrategyError> {
+    Ok(Box::new((Pool::new(blueprint)?, run)))
+}
+
+impl Strategy for (Pool, InPool) {
+    /// Raises again a panic that a job has caught. Rayon alone would pass a panic on, too, but would first run all other
+    /// jobs.
+    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
+        let (Pool { pool, .. }, run) = self;
+        let panics = Panics::default();
+        pool.install(|| run(&panics, jobs, &job));
+        panics.raise();
+        Ok(())
+    }
 }
 
 impl Pool {
@@ -43,14 +63,6 @@ impl Pool {
                 source: io::Error::other(error),
             })),
         }
-    }
-
-    /// Runs `body` on a worker while the caller waits, and raises again a panic that it has caught. Rayon alone would
-    /// pass a panic on, too, but would first run all other jobs.
-    pub(super) fn run(&self, body: impl FnOnce(&Panics) + Send) {
-        let panics = Panics::default();
-        self.pool.install(|| body(&panics));
-        panics.raise();
     }
 
     /// Returns rayon's pool.

@@ -12,30 +12,20 @@
 
 use ::rayon::scope;
 
-use super::rayon_pool::Pool;
-use crate::{Blueprint, Discipline, Entry, Job, Strategy, StrategyError};
+use super::rayon_pool::in_pool;
+use crate::{Discipline, Entry, Job, Panics};
 
 pub(super) const ENTRY: Entry =
-    Entry::new("rayon-scope", "rayon's scope, one task for each job", Discipline::ONE_BY_ONE, make);
+    Entry::new("rayon-scope", "rayon's scope, one task for each job", Discipline::ONE_BY_ONE, |blueprint| {
+        in_pool(blueprint, run)
+    });
 
-fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
-    Ok(Box::new(RayonScope(Pool::new(blueprint)?)))
-}
-
-struct RayonScope(Pool);
-
-impl Strategy for RayonScope {
-    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
-        self.0.run(|panics| {
-            // Tasks borrow the job: a clone for each would cost two atomic updates on a cache line that all workers
-            // use.
-            let job = &*job;
-            scope(|scope| {
-                for index in 0..jobs {
-                    scope.spawn(move |_| panics.attempt(|| job(index)));
-                }
-            });
-        });
-        Ok(())
-    }
+fn run(panics: &Panics, jobs: usize, job: &Job) {
+    // Tasks borrow the job: a clone for each would cost two atomic updates on a cache line that all workers use.
+    let job = &**job;
+    scope(|scope| {
+        for index in 0..jobs {
+            scope.spawn(move |_| panics.attempt(|| job(index)));
+        }
+    });
 }

@@ -7,7 +7,7 @@
 //!
 //! Cost: an indirect call for each job.
 
-use crate::{Blueprint, Discipline, Entry, Job, Strategy, StrategyError, Workers};
+use crate::{Blueprint, Discipline, Entry, Job, StrategyError, Workers, each_run};
 
 pub(super) const ENTRY: Entry = Entry {
     workers: Workers::Caller,
@@ -15,21 +15,13 @@ pub(super) const ENTRY: Entry = Entry {
         "serial",
         "one job after the other on the calling thread: the baseline of speedups (ignores --threads)",
         Discipline::InOrder,
-        make,
+        |blueprint| each_run(blueprint, run),
     )
 };
 
-fn make(_: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
-    Ok(Box::new(Serial))
-}
-
-struct Serial;
-
-impl Strategy for Serial {
-    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
-        for index in 0..jobs {
-            job(index);
-        }
-        Ok(())
+fn run(_: &Blueprint, jobs: usize, job: &Job) -> Result<(), StrategyError> {
+    for index in 0..jobs {
+        job(index);
     }
+    Ok(())
 }

@@ -13,36 +13,28 @@ use std::sync::Arc;
 
 use crate::counter::Counter;
 use crate::panics::Panics;
-use crate::{Blueprint, Discipline, Entry, Job, Strategy, StrategyError, team};
+use crate::{Blueprint, Discipline, Entry, Job, StrategyError, each_run, team};
 
 pub(super) const ENTRY: Entry = Entry::new(
     "shared-counter",
     "a free worker takes the next index from an atomic counter",
     Discipline::ONE_BY_ONE,
-    make,
+    |blueprint| each_run(blueprint, run),
 );
 
-fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
-    Ok(Box::new(SharedCounter(blueprint.clone())))
-}
-
-struct SharedCounter(Blueprint);
-
-impl Strategy for SharedCounter {
-    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
-        let next = Arc::new(Counter::default());
-        let bodies = (0..self.0.threads.get().min(jobs)).map(|_| {
-            let (job, next) = (Arc::clone(&job), Arc::clone(&next));
-            move |panics: &Panics| {
-                while !panics.stop_asked() {
-                    let index = next.take();
-                    if index >= jobs {
-                        break;
-                    }
-                    job(index);
+fn run(blueprint: &Blueprint, jobs: usize, job: &Job) -> Result<(), StrategyError> {
+    let next = Arc::new(Counter::default());
+    let bodies = (0..blueprint.workers(jobs)).map(|_| {
+        let (job, next) = (Arc::clone(job), Arc::clone(&next));
+        move |panics: &Panics| {
+            while !panics.stop_asked() {
+                let index = next.take();
+                if index >= jobs {
+                    break;
                 }
+                job(index);
             }
-        });
-        team::run(&*self.0.spawner, bodies)
-    }
+        }
+    });
+    team::run(&*blueprint.spawner, bodies)
 }

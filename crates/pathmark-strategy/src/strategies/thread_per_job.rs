@@ -12,7 +12,7 @@
 use std::sync::Arc;
 
 use crate::panics::Panics;
-use crate::{Blueprint, Discipline, Entry, Job, Spawner, Strategy, StrategyError, Workers, team};
+use crate::{Blueprint, Discipline, Entry, Job, StrategyError, Workers, each_run, team};
 
 pub(super) const ENTRY: Entry = Entry {
     workers: Workers::PerJob,
@@ -20,28 +20,18 @@ pub(super) const ENTRY: Entry = Entry {
         "thread-per-job",
         "a new thread for each job, all at once (ignores --threads)",
         Discipline::AllAtOnce,
-        make,
+        |blueprint| each_run(blueprint, run),
     )
 };
 
-fn make(Blueprint { spawner, .. }: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
-    Ok(Box::new(ThreadPerJob { spawner: Arc::clone(spawner) }))
-}
-
-struct ThreadPerJob {
-    spawner: Arc<dyn Spawner>,
-}
-
-impl Strategy for ThreadPerJob {
-    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
-        let bodies = (0..jobs).map(|index| {
-            let job = Arc::clone(&job);
-            move |panics: &Panics| {
-                if !panics.stop_asked() {
-                    job(index);
-                }
+fn run(blueprint: &Blueprint, jobs: usize, job: &Job) -> Result<(), StrategyError> {
+    let bodies = (0..jobs).map(|index| {
+        let job = Arc::clone(job);
+        move |panics: &Panics| {
+            if !panics.stop_asked() {
+                job(index);
             }
-        });
-        team::run(&*self.spawner, bodies)
-    }
+        }
+    });
+    team::run(&*blueprint.spawner, bodies)
 }

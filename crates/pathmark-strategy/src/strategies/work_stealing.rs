@@ -17,42 +17,34 @@ use crossbeam::deque::{Injector, Steal, Stealer, Worker};
 
 use crate::panics::Panics;
 use crate::taken::Taken;
-use crate::{Amount, Blueprint, Discipline, Entry, Job, Start, Stealing, Strategy, StrategyError, Victim, team};
+use crate::{Amount, Blueprint, Discipline, Entry, Job, Start, Stealing, StrategyError, Victim, each_run, team};
 
 pub(super) const ENTRY: Entry = Entry::new(
     "work-stealing",
     "a deque for each worker; an idle worker steals from the others",
     Discipline::Stealing(STEALING),
-    make,
+    |blueprint| each_run(blueprint, run),
 );
 
 /// Crossbeam moves half of a queue at a time, up to 32 jobs.
 const STEALING: Stealing = Stealing { start: Start::Shared(32), amount: Amount::Half, victim: Victim::Neighbour };
 
-fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
-    Ok(Box::new(WorkStealing(blueprint.clone())))
-}
-
-struct WorkStealing(Blueprint);
-
-impl Strategy for WorkStealing {
-    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
-        let deques: Vec<_> = (0..self.0.threads.get().min(jobs)).map(|_| Worker::new_lifo()).collect();
-        let shared = Arc::new(Shared {
-            injector: Injector::new(),
-            stealers: deques.iter().map(Worker::stealer).collect(),
-            taken: Taken::new(jobs, deques.len()),
-        });
-        (0..jobs).for_each(|index| shared.injector.push(index));
-        let bodies = deques.into_iter().enumerate().map(|(worker, deque)| {
-            let (job, shared) = (Arc::clone(&job), Arc::clone(&shared));
-            move |panics: &Panics| {
-                let next = || deque.pop().or_else(|| shared.steal(worker, &deque));
-                shared.taken.work(worker, panics, next, &*job);
-            }
-        });
-        team::run(&*self.0.spawner, bodies)
-    }
+fn run(blueprint: &Blueprint, jobs: usize, job: &Job) -> Result<(), StrategyError> {
+    let deques: Vec<_> = (0..blueprint.workers(jobs)).map(|_| Worker::new_lifo()).collect();
+    let shared = Arc::new(Shared {
+        injector: Injector::new(),
+        stealers: deques.iter().map(Worker::stealer).collect(),
+        taken: Taken::new(jobs, deques.len()),
+    });
+    (0..jobs).for_each(|index| shared.injector.push(index));
+    let bodies = deques.into_iter().enumerate().map(|(worker, deque)| {
+        let (job, shared) = (Arc::clone(job), Arc::clone(&shared));
+        move |panics: &Panics| {
+            let next = || deque.pop().or_else(|| shared.steal(worker, &deque));
+            shared.taken.work(worker, panics, next, &*job);
+        }
+    });
+    team::run(&*blueprint.spawner, bodies)
 }
 
 /// The data that the workers of one run share.
