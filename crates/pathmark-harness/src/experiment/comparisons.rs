@@ -115,11 +115,17 @@ impl Comparisons {
         Ok(Self { pairs })
     }
 
-    /// Refuses entries by which no cell is compared, in a sweep of all cells.
+    /// Refuses entries by which no cell is compared, in a sweep of all cells, and a second stage without goals.
     pub(super) fn check(&self, definition: &Definition, profile: Profile) -> Result<()> {
         if self.pairs.is_empty() && !definition.compare.is_empty() {
             let error = InputError::new("compare", "", "selects no two cells of one image");
             return Err(definition.located(profile, error.allowed("values that cells of the matrix have")));
+        }
+        if definition.second_stage(profile)?.is_some() && self.pairs.iter().all(|pair| pair.goal.is_none()) {
+            let error = InputError::new("at-least", "", "is for comparisons that miss their goal, and none has a goal");
+            return Err(
+                definition.located(profile, error.allowed("goal under [[compare]], or a number of repetitions"))
+            );
         }
         Ok(())
     }

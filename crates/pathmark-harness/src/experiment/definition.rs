@@ -21,6 +21,7 @@
 //! ```
 
 use super::comparisons::Compare;
+use super::second_stage::SecondStage;
 use super::stopping_rule::StoppingRule;
 use super::table::{Matrix, Scale, TIME_LIMIT, one_or_many};
 use super::texts::experiments;
@@ -287,6 +288,10 @@ impl Definition {
     /// The goal at which repetitions stop; `None` if their number is fixed.
     pub(super) fn until(&self, profile: Profile) -> Result<Option<&StoppingRule>> {
         Ok(self.scale(profile)?.until.as_ref())
+    }
+
+    pub(super) fn second_stage(&self, profile: Profile) -> Result<Option<&SecondStage>> {
+        Ok(self.scale(profile)?.second_stage.as_ref())
     }
 
     /// Pairs of a process, where cells are compared.

@@ -34,7 +34,7 @@ const KEYS: &[(&str, &str)] = &[
     ("external", "another program to run beside the cells, under [[external]]"),
     (
         "quick",
-        "the profile --quick: any axis, size, repetitions (a number, or { until = \"3 %\", at-most = 200, max-time = \"60 s\" }; until may be \"fastest\" or \"order\"), pairs (of each process, where cells are compared), reference-spp, timeout [default: 320x240, 6 repetitions]",
+        "the profile --quick: any axis, size, repetitions (a number, or { until = \"3 %\", at-most = 200, max-time = \"60 s\" }; until may be \"fastest\" or \"order\"; or { at-least = 16, at-most = 48, max-time = \"2 min\" }: more for comparisons that missed their goal), pairs (of each process, where cells are compared), reference-spp, timeout [default: 320x240, 6 repetitions]",
     ),
     ("full", "the profile --full, likewise"),
     ("reports", "the profile --reports, likewise"),

@@ -228,16 +228,20 @@ mod tests {
     use super::*;
     use crate::lab::Lab;
 
-    fn limits(first: &str, second: &str) -> Vec<Option<u32>> {
+    /// A definition of two matrices, which have these lines besides the axes that none can leave out.
+    fn defined(first: &str, second: &str) -> Definition {
         let matrix = |own: &str| {
             let axes =
                 "scene = [\"cornell\"]\nspp = [4]\nstrategy = [\"serial\"]\nthreads = [1]\ndecomposition = [\"rows\"]";
             format!("[[matrix]]\n{axes}\n{own}\n")
         };
         let head = "title = \"t\"\nquestion = \"q\"\nfigures = []\n";
-        let text = format!("{head}{}{}[quick]\nrepetitions = 5", matrix(first), matrix(second));
-        let definition = Definition::from_text(&Lab::built_in(), "x", "x.toml", &text).unwrap();
-        definition.cells(Profile::Quick).unwrap().into_iter().map(|cell| cell.at_most).collect()
+        let text = format!("{head}{}{}[quick]\nrepetitions = 5\n[full]", matrix(first), matrix(second));
+        Definition::from_text(&Lab::built_in(), "x", "x.toml", &text).unwrap()
+    }
+
+    fn limits(first: &str, second: &str) -> Vec<Option<u32>> {
+        defined(first, second).cells(Profile::Quick).unwrap().into_iter().map(|cell| cell.at_most).collect()
     }
 
     /// A case that a search through all cells for each cell would slow down: two matrices with the same thousands of
@@ -257,5 +261,12 @@ mod tests {
         assert_eq!(limits("repetitions = 3", "repetitions = 2"), [Some(3)]);
         assert_eq!((limits("repetitions = 2", ""), limits("", "repetitions = 2")), (vec![None], vec![None]));
         assert_eq!(limits("repetitions = 2", "repetitions = 5"), [None]);
+    }
+
+    #[test]
+    fn a_matrix_is_for_the_profiles_that_it_names() {
+        let found = defined("seed = [1, 2]\nprofiles = [\"full\"]", "seed = [3]");
+        let count = |profile| found.cells(profile).unwrap().len();
+        assert_eq!((count(Profile::Quick), count(Profile::Full)), (1, 3));
     }
 }

@@ -38,6 +38,7 @@ mod replication;
 mod replication_tests;
 mod run_file;
 mod running;
+mod second_stage;
 #[cfg(test)]
 mod setting_tests;
 mod shuffle;

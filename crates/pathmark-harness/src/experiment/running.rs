@@ -98,6 +98,10 @@ impl<'a> Running<'a> {
         self.decisions.note(record, true);
     }
 
+    pub(super) fn decisions(&self) -> &Decisions {
+        &self.decisions
+    }
+
     /// Runs a repetition of a cell and adds the rows that are missing.
     pub(super) fn cell(&mut self, index: usize, repetition: u32) -> Result<()> {
         let cell = &self.sweep.cells[index];

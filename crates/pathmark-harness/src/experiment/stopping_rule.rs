@@ -59,14 +59,7 @@ pub struct StoppingRule {
 impl StoppingRule {
     /// Parses a goal (`3%`, `0.03`, `fastest` or `order`) and a time (`60s`).
     pub fn parse(goal: &str, max_time: Option<&str>) -> Result<Self> {
-        let length = |text: &str| -> Result<Duration> {
-            let wrong = || {
-                InputError::new("max-time", text, "is not a duration")
-                    .allowed("a number with a unit, as in 60s or 2min")
-            };
-            Ok(humantime::parse_duration(text).map_err(|_| wrong())?)
-        };
-        let max_time = max_time.map(length).transpose()?;
+        let max_time = max_time.map(parse_max_time).transpose()?;
         let word = Goal::WORDS.iter().find(|(word, _)| *word == goal.trim());
         let goal_of = word.map_or_else(|| share(goal).map(Goal::Share), |(_, goal)| Ok(*goal));
         Ok(Self { goal: goal_of?, text: goal.to_string(), max_time })
@@ -112,6 +105,12 @@ fn is_of_all_schedules(options: &Options) -> std::result::Result<(), &'static st
         (_, Some(_)) => Err("compares all schedules of an image, but a part of a sweep has only some of them"),
         (None, None) => Ok(()),
     }
+}
+
+pub(super) fn parse_max_time(text: &str) -> Result<Duration> {
+    let wrong =
+        || InputError::new("max-time", text, "is not a duration").allowed("a number with a unit, as in 60s or 2min");
+    Ok(humantime::parse_duration(text).map_err(|_| wrong())?)
 }
 
 /// Parses a share that repetitions can reach: above 0.
@@ -179,8 +178,14 @@ impl Decisions {
 
     /// The ratio of two cells that run side by side.
     pub(super) fn paired(&self, what: &str, with: &str) -> Option<PairedRatio> {
+        self.paired_before(what, with, u32::MAX)
+    }
+
+    /// [`Self::paired`], from the processes below a number.
+    pub(super) fn paired_before(&self, what: &str, with: &str, end: u32) -> Option<PairedRatio> {
         let [[_, what], [_, with]] = [self.times.get(what)?, self.times.get(with)?];
-        paired_ratio(&by_process(ratios_in_pairs(what, with)), LEVEL)
+        let ratios = ratios_in_pairs(what, with).into_iter().filter(|(process, _)| *process < end);
+        paired_ratio(&by_process(ratios), LEVEL)
     }
 
     /// Whether the ratio of two cells that run side by side is known to within the limit, or cannot be known.

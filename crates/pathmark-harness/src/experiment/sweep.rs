@@ -231,6 +231,9 @@ impl<'a> Sweep<'a> {
             }
         }
         progress.end();
+        if let Some(stage) = self.second_stage()? {
+            self.run_second_stage(stage, (repetitions, begun), &mut running, progress)?;
+        }
         if let Some(missed) = running.missed_goals() {
             progress.note(&missed);
         }

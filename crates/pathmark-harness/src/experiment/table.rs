@@ -1,6 +1,7 @@
 //! The tables of a definition that give values to axes: `[matrix]`, and a table for each profile.
 
 use super::definition::REFERENCE_SPP;
+use super::second_stage::SecondStage;
 use super::stopping_rule::{MOST_REPETITIONS, StoppingRule};
 use super::{Profile, Timeout};
 use crate::measure::{Kind, SETTINGS, Setting, available_threads};
@@ -23,11 +24,13 @@ pub(super) struct Table<const PROFILE: bool> {
     pub(super) curve: bool,
     /// The profiles that the matrix is for; all, if `None`.
     pub(super) profiles: Option<Vec<Profile>>,
-    /// The repetitions of each cell; the largest number, if there is a goal.
+    /// The repetitions of each cell; the largest number, if there is a goal, and those of the first stage, if there are
+    /// two.
     pub(super) repetitions: u32,
     /// The largest number of repetitions of the matrix's cells.
     pub(super) at_most: Option<u32>,
     pub(super) until: Option<StoppingRule>,
+    pub(super) second_stage: Option<SecondStage>,
     pub(super) reference_spp: Option<u32>,
     /// Pairs of a process, where cells are compared.
     pub(super) pairs: Option<u32>,
@@ -77,12 +80,12 @@ impl<const PROFILE: bool> Table<PROFILE> {
     }
 }
 
-/// The repetitions of a profile: a number, or a goal.
+/// The repetitions of a profile: a number, a goal, or two stages.
 #[derive(Deserialize)]
 #[serde(
     untagged,
     deny_unknown_fields,
-    expecting = "expected a number or { until = \"3 %\", at-most = 200, max-time = \"60 s\" }"
+    expecting = "expected a number, { until = \"3 %\", at-most = 200, max-time = \"60 s\" } or { at-least = 16, at-most = 48, max-time = \"2 min\" }"
 )]
 enum Repetitions {
     Count(u32),
@@ -91,6 +94,12 @@ enum Repetitions {
         until: String,
         at_most: Option<u32>,
         #[serde(alias = "within")]
+        max_time: Option<String>,
+    },
+    #[serde(rename_all = "kebab-case")]
+    Stages {
+        at_least: u32,
+        at_most: u32,
         max_time: Option<String>,
     },
 }
@@ -189,6 +198,11 @@ impl<'de, const PROFILE: bool> Visitor<'de> for TableVisitor<PROFILE> {
                     Repetitions::StoppingRule { until, at_most, max_time } => {
                         table.repetitions = at_most.unwrap_or(MOST_REPETITIONS);
                         table.until = Some(StoppingRule::parse(&until, max_time.as_deref()).map_err(M::Error::custom)?);
+                    }
+                    Repetitions::Stages { at_least, at_most, max_time } => {
+                        let stage = SecondStage::parse(at_least, at_most, max_time.as_deref());
+                        table.second_stage = Some(stage.map_err(M::Error::custom)?);
+                        table.repetitions = at_least;
                     }
                 },
                 (None, PAIRS) => table.pairs = Some(map.next_value::<NonZeroU32>()?.get()),
