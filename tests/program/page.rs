@@ -215,6 +215,12 @@ fn each_experiment_has_a_page_beside_the_whole_one() {
     }
     assert!(links(&read("index.html")).contains(&"other.html".to_string()));
     assert!(read("tiny.html").contains("id=\"tiny-speedup\"") && !read("tiny.html").contains("id=\"other-speedup\""));
+    // The folder of an experiment has a page of its own, too.
+    let own = folder.path().join("out/tiny");
+    finish(pathmark(folder.path(), &["report", "out/tiny"])).with_code(0);
+    let html = fs::read_to_string(own.join("report.html")).unwrap();
+    assert!(html.contains("id=\"tiny-speedup\""));
+    links(&html).iter().for_each(|link| assert!(own.join(link).is_file(), "{link} leads nowhere"));
 }
 
 fn browser() -> Option<&'static str> {

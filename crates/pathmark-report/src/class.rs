@@ -20,9 +20,13 @@ pub(crate) struct Member {
     pub(crate) student: Option<String>,
 }
 
-/// The experiments of a page, sorted by their folders: those of the folder itself, or those of a class. A folder is a class
-/// if none in it has the name of its experiment, and there is more than one, or one with experiments in it.
+/// The experiments of a page, sorted by their folders: the folder itself if it has rows, otherwise those in it, or those of
+/// a class. A folder is a class if none in it has the name of its experiment, and there is more than one, or one with
+/// experiments in it.
 pub(crate) fn members(out: &Path) -> Result<Vec<Member>> {
+    if has_records(out) {
+        return Ok(vec![Member { folder: out.to_path_buf(), student: None }]);
+    }
     let (with_rows, others): (Vec<PathBuf>, Vec<PathBuf>) =
         folders(out)?.into_iter().partition(|path| has_records(path));
     let mut found = with_rows.into_iter().map(member).collect::<Result<Vec<Member>>>()?;

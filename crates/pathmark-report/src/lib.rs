@@ -127,12 +127,10 @@ fn sections(lab: &Arc<Lab>, out: &Path) -> Result<Vec<Section>> {
         if let Some(student) = &student {
             class.add(student, &results)?;
         }
-        let own = folder.strip_prefix(out).unwrap_or(&folder).display().to_string();
-        let rows = records_path(&folder);
-        let files = [rows.as_path(), Path::new(MACHINE)]
-            .map(|file| format!("{own}/{}", file.file_name().unwrap_or_default().to_string_lossy()))
-            .to_vec();
-        let linked_figures = (student.is_some() && are_many).then(|| format!("{own}/figures"));
+        let own = folder.strip_prefix(out).unwrap_or(&folder);
+        let seen = |file: &Path| own.join(file.file_name().unwrap_or_default()).display().to_string();
+        let files = vec![seen(&records_path(&folder)), seen(Path::new(MACHINE))];
+        let linked_figures = (student.is_some() && are_many).then(|| seen(Path::new("figures")));
         let section = Section { files, linked_figures, ..Section::of(results, blocks) };
         add(&folder, class::of_student(student.as_deref(), section))?;
     }

@@ -6,7 +6,7 @@ use crate::report::{self, Crop};
 /// `pathmark report out`
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// A folder that `reproduce` or `run` wrote
+    /// A folder that `reproduce` or `run` wrote, or that of an experiment in it
     folder: PathBuf,
     /// Also draw the pictures of the figure `equal-time` with this square marked, and its pixels enlarged below: column and
     /// row of its top left pixel, and its width, as in 20,10,32. May be given several times

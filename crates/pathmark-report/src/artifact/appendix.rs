@@ -34,6 +34,7 @@ pub(super) struct Appendix<'a> {
     pub(super) here: &'a Machine,
     /// Their sources are paths in the archive.
     pub(super) answers: &'a [Answer<'a>],
+    pub(super) tables: &'a BTreeMap<PathBuf, &'a PlainRows>,
     pub(super) first: &'a Answer<'a>,
     pub(super) can_measure: bool,
     pub(super) costs: &'a Costs,
@@ -103,11 +104,11 @@ impl Appendix<'_> {
     }
 
     fn rows(&self) -> String {
-        rows_in_words(self.experiments.len(), tables(self.answers).len())
+        rows_in_words(self.experiments.len(), self.tables.len())
     }
 
     fn about(&self) -> String {
-        let measures = match (self.experiments.is_empty(), tables(self.answers).is_empty()) {
+        let measures = match (self.experiments.is_empty(), self.tables.is_empty()) {
             (true, _) => "",
             (false, true) => ", and measures the rows again",
             (false, false) => ", and measures those of experiments again",
@@ -155,14 +156,14 @@ impl Appendix<'_> {
         let of =
             |machine: &Machine| format!("{}, {:.1} GB of memory", machine.line(), machine.memory_bytes as f64 / 1e9);
         let own = self.experiments.iter().map(|own| of(&own.run.machine));
-        let others = tables(self.answers).into_values().filter_map(|table| table.machine.clone());
+        let others = self.tables.values().filter_map(|table| table.machine.clone());
         distinct(own.chain(others))
     }
 
     /// Bytes of new rows, where they are known.
     fn new_bytes(&self) -> String {
         let own = self.costs.values().flatten().map(|cost| cost.plan.bytes);
-        let others = tables(self.answers).into_values().filter_map(|table| table.bytes);
+        let others = self.tables.values().filter_map(|table| table.bytes);
         let known: Vec<u64> = own.chain(others).collect();
         if known.is_empty() { String::new() } else { format!(", and about {} for new rows", bytes(known.iter().sum())) }
     }
@@ -172,9 +173,8 @@ impl Appendix<'_> {
         let here = self.here.line();
         let own: Vec<f64> = self.costs.values().flatten().map(|cost| cost.plan.seconds()).collect();
         let failed = self.costs.len() - own.len();
-        let tables = tables(self.answers);
-        let others: Vec<f64> = tables.values().filter_map(|table| table.seconds).collect();
-        let untold = tables.len() - others.len();
+        let others: Vec<f64> = self.tables.values().filter_map(|table| table.seconds).collect();
+        let untold = self.tables.len() - others.len();
         let parts = [
             (!own.is_empty()).then(|| format!("{}, estimated by a pilot on {here}", seconds(own.iter().sum()))),
             (failed > 0).then(|| format!("unknown for {} that cannot run there", counted(failed, "experiment"))),
@@ -203,7 +203,7 @@ impl Appendix<'_> {
         } else {
             ("", "")
         };
-        let others = if tables(self.answers).is_empty() { "" } else { " Rows of other programs are there, too." };
+        let others = if self.tables.is_empty() { "" } else { " Rows of other programs are there, too." };
         format!(
             "## Description\n\n`{ROWS}/` has a folder for each run.{own}{others} `{LEDGER}/` has the claims: quotes, queries, \
              predictions and their reasons.{left_out}\n\nThe verdicts need no special hardware or software besides the program.{new}"
@@ -309,8 +309,8 @@ impl Appendix<'_> {
 
     /// The rows of other programs.
     fn others(&self) -> String {
-        let line = |(path, table): (PathBuf, &PlainRows)| format!("* `{}`: {}", path.display(), of_table(table));
-        let lines: Vec<String> = tables(self.answers).into_iter().map(line).collect();
+        let line = |(path, table): (&PathBuf, &&PlainRows)| format!("* `{}`: {}", path.display(), of_table(table));
+        let lines: Vec<String> = self.tables.iter().map(line).collect();
         if lines.is_empty() { String::new() } else { format!("## Rows of other programs\n\n{}", lines.join("\n")) }
     }
 }

@@ -168,6 +168,7 @@ pub fn write(lab: &Arc<Lab>, request: &Request<'_>) -> Result<Written> {
         features: &features,
         here: &here,
         answers: &answers,
+        tables: &appendix::tables(&answers),
         first,
         can_measure: measure.is_some(),
         costs: &costs,
