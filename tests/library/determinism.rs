@@ -1,7 +1,6 @@
 //! Determinism: equal settings give equal images (docs/notes/determinism.md, and G10, F12 of the catalogue of hard cases).
 //! The recorded checksums are in its table (`crates/pathmark-check/src/path/order.rs`).
 
-use crate::scene_text::{Ball, load_scene};
 use pathmark::film::{Bounds, Piece, PixelSum, TileBuffer};
 use pathmark::kernel::{self, Spec};
 use pathmark::math::Vec3;
@@ -65,35 +64,6 @@ fn an_unreachable_object_changes_nothing() {
     // The checksum does change if the object can be reached.
     larger.primitives.spheres.last_mut().unwrap().center = [50.0, 30.0, 60.0].into();
     assert_ne!(checksum(&larger, spec("bsdf")), checksum(&cornell, spec("bsdf")));
-}
-
-/// Effects that are compiled in but unused change no bit.
-#[test]
-fn a_larger_effect_profile_changes_nothing() {
-    let ball = |center, radius, emission| {
-        let material = "{ diffuse = { albedo = [0.7, 0.5, 0.3] } }".to_string();
-        Ball { center, radius, material, emission }
-    };
-    let scene = load_scene([0.0; 3], &[ball([0.0; 3], 9.0, [0.1; 3]), ball([0.5, 0.0, -5.0], 1.0, [2.0, 1.0, 1.0])]);
-    let scene = Arc::new(scene.unwrap());
-    let render = |effects: &str| {
-        let spec = Spec { effects: Some(effects.into()), ..spec("smallpt") };
-        let settings = Settings {
-            scene: String::new(),
-            spp: 8,
-            spec,
-            decomposition: "rows".into(),
-            strategy: "serial".into(),
-            threads: 1,
-            ..Settings::default()
-        };
-        let setup = Setup::for_scene(Arc::clone(&scene), settings).unwrap();
-        assert_eq!(setup.scene().unwrap().1.effects(), effects);
-        setup.run(None).unwrap()
-    };
-    let (diffuse, all) = (render("diffuse"), render("all"));
-    assert_eq!((&diffuse.checksum, diffuse.counts), (&all.checksum, all.counts));
-    assert_eq!(diffuse.checksum, Some(checksum(&scene, spec("smallpt"))), "the smallest profile is not `diffuse`");
 }
 
 /// A sample is a function of its index, with every sampler. The first 16 of 32 samples are the 16-sample image. Both

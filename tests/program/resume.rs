@@ -1,5 +1,5 @@
 //! A resumed sweep gives the rows of an undisturbed one: each row once, whole, with the same checksums.
-//! `tests/program/faults` has the kills at any instant.
+//! `tests/program/faults` has the kills at any instant and the torn rows.
 
 use crate::experiment::{TINY, write_tiny};
 use crate::program::{finish, in_memory, pathmark};
@@ -7,7 +7,6 @@ use crate::snapshot::{assert_untouched, snapshot};
 use std::collections::{BTreeMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 const RUN: [&str; 4] = ["run", "tiny.toml", "--out", "out"];
 const RESUME: [&str; 5] = ["run", "tiny.toml", "--out", "out", "--resume"];
@@ -46,30 +45,6 @@ fn rewrite(records: &Path, field: impl for<'a> Fn(usize, &str, &'a str) -> &'a s
         writer.write_record(headers.iter().zip(&row).map(|(column, own)| field(index, column, own))).unwrap();
     }
     fs::write(records, writer.into_inner().unwrap()).unwrap();
-}
-
-/// Resuming drops torn data, whatever is left of it, and repeats only the missing rows.
-#[test]
-fn a_torn_row_is_written_again() {
-    let (folder, records) = prepared(TINY);
-    finish(pathmark(folder.path(), &RUN)).with_code(0);
-    let (expected, whole) = (results(&records), fs::read_to_string(&records).unwrap());
-    let header = whole.find('\n').unwrap() + 1;
-    let row = &whole[header..header + whole[header..].find('\n').unwrap()];
-    let cuts = [1, header / 2, header - 1, header, header + 1, header + row.len() / 2, whole.len() - 1];
-    for cut in cuts {
-        println!("cut at {cut}");
-        fs::write(&records, &whole[..cut]).unwrap();
-        finish(pathmark(folder.path(), &RESUME)).with_code(0);
-        assert_eq!(results(&records), expected);
-    }
-    // Half a row more, and bytes that are no text: a power cut may leave either.
-    for tail in [row.as_bytes()[..row.len() / 2].to_vec(), vec![0; 100], vec![0xff; 100]] {
-        println!("tail {:?}", &tail[..4]);
-        fs::write(&records, [whole.as_bytes(), &tail].concat()).unwrap();
-        finish(pathmark(folder.path(), &RESUME)).with_code(0);
-        assert_eq!(fs::read_to_string(&records).unwrap(), whole);
-    }
 }
 
 /// Killed between the creation of the folder's files: `--resume` continues from any of these states.
@@ -212,81 +187,5 @@ fn a_curve_cut_off_among_its_rows_is_resumed() {
     let inside = lines.windows(2).position(|pair| pair.iter().all(|line| line.contains("curve-40"))).unwrap() + 1;
     fs::write(&records, lines[..inside].concat()).unwrap();
     finish(pathmark(folder.path(), &RESUME)).with_code(0);
-    assert_eq!(results(&records), expected);
-}
-
-/// The form of the experiments at the reports' sizes: a matrix for one profile beside one for all, several seeds, a
-/// thread for each row, and errors from a reference.
-const REPORTS: &str = r#"title = "Tiny"
-question = "Does it go on?"
-analysis = "It did."
-figures = ["rmse-against-spp", "time-against-spp"]
-keep = ["images"]
-
-[[matrix]]
-scene = ["cornell"]
-estimator = ["smallpt"]
-spp = [4, 8]
-seed = [1, 2]
-strategy = ["work-stealing"]
-threads = [2]
-decomposition = ["tiles:8x8"]
-
-[[matrix]]
-profiles = ["reports"]
-scene = ["cornell"]
-estimator = ["smallpt"]
-spp = [4, 8]
-seed = [1, 2]
-strategy = ["serial", "thread-per-row"]
-threads = [1]
-decomposition = ["rows"]
-
-[reference]
-estimator = "bsdf"
-
-[quick]
-size = [12, 8]
-repetitions = 1
-reference-spp = 80
-
-[reports]
-size = [24, 16]
-repetitions = 2
-reference-spp = 80
-"#;
-
-/// Runs the program until the table has `count` rows, then kills it.
-fn kill_at(folder: &Path, arguments: &[&str], records: &Path, count: usize) {
-    let mut child = pathmark(folder, arguments).spawn().unwrap();
-    let start = Instant::now();
-    let there = || fs::read_to_string(records).map_or(0, |text| text.matches('\n').count());
-    // The header is a line, too.
-    while there() < count + 1 {
-        assert!(start.elapsed() < Duration::from_mins(2), "{count} rows take too long");
-        assert!(child.try_wait().unwrap().is_none(), "it ended before it had {count} rows");
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    child.kill().unwrap();
-    child.wait().unwrap();
-}
-
-#[test]
-fn a_sweep_killed_at_several_row_counts_comes_to_the_same_rows() {
-    let (folder, records) = prepared(REPORTS);
-    finish(pathmark(folder.path(), &RUN)).with_code(0);
-    assert_eq!(results(&records).len(), 4, "the second matrix is for another profile");
-    fs::remove_dir_all(folder.path().join("out")).unwrap();
-    let new = [RUN.as_slice(), &["--reports"]].concat();
-    let resume = [RESUME.as_slice(), &["--reports"]].concat();
-    finish(pathmark(folder.path(), &new)).with_code(0);
-    let expected = results(&records);
-    assert_eq!(expected.len(), 12 * 2);
-    fs::remove_dir_all(folder.path().join("out")).unwrap();
-    kill_at(folder.path(), &new, &records, 1);
-    for count in [5, 11, 17] {
-        kill_at(folder.path(), &resume, &records, count);
-    }
-    finish(pathmark(folder.path(), &resume)).with_code(0);
     assert_eq!(results(&records), expected);
 }

@@ -1,12 +1,10 @@
-//! Renders in rounds: their reports, their files, and kills in between.
+//! Renders in rounds: their reports and their files. `faults/kills.rs` has the kills in between.
 
 use super::{json, run};
 use crate::program::{finish, in_memory, pathmark};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use std::process::Stdio;
-use std::time::Duration;
 
 const SIZE: [&str; 4] = ["render", "cornell", "--size", "48x32"];
 
@@ -64,48 +62,6 @@ fn options_that_contradict_are_refused() {
     refused(folder.path(), &["--checkpoint", "c", "--sampler", "locked"], &["checkpoint", "locked"]);
 }
 
-const FEWEST_KILLS: u64 = 5;
-
-/// Killed (SIGKILL) at growing delays until it finishes, a render gives the image of an undisturbed one.
-#[test]
-fn killed_at_any_instant_it_goes_on_to_the_same_image() {
-    let folder = in_memory();
-    for goal in [["--spp", "1100"], ["--target-error", "0.042"]] {
-        let expected = render(folder.path(), &goal);
-        let options = [SIZE.as_slice(), &goal, &["--checkpoint", "box.checkpoint", "-o", "box.pfm", "--json"]].concat();
-        let mut kills = 0;
-        loop {
-            let mut command = pathmark(folder.path(), &options);
-            command.stdout(Stdio::piped()).stderr(Stdio::null());
-            let mut child = command.spawn().unwrap();
-            std::thread::sleep(Duration::from_millis(5 + kills * 11 % 170 + kills));
-            let ended = child.try_wait().unwrap().is_some();
-            child.kill().unwrap();
-            let output = child.wait_with_output().unwrap();
-            if ended {
-                assert!(output.status.success(), "after {kills} kills: {:?}", output.status);
-                let found = json(&String::from_utf8(output.stdout).unwrap());
-                assert_eq!((&found["checksum"], &found["spp"]), (&expected["checksum"], &expected["spp"]));
-                if kills >= FEWEST_KILLS {
-                    break;
-                }
-                // The machine is fast, or was busy while this process slept: start over.
-                fs::remove_file(folder.path().join("box.checkpoint")).unwrap();
-                continue;
-            }
-            kills += 1;
-        }
-        println!("{kills} kills on the way to {goal:?}");
-        // Nothing is left to do, and the temporary files of the killed processes are gone.
-        let again = json(&run(folder.path(), &options).out);
-        let names = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name());
-        let left: Vec<_> = names.filter(|name| name.to_string_lossy().starts_with(".pathmark-")).collect();
-        assert!(left.is_empty(), "{left:?}");
-        assert_eq!((&again["checksum"], &again["rounds"]), (&expected["checksum"], &0.into()));
-        fs::remove_file(folder.path().join("box.checkpoint")).unwrap();
-    }
-}
-
 /// A light beyond single precision makes invalid samples. A resumed render counts them as well, and so does a render
 /// that finds nothing left to do.
 #[test]
@@ -145,6 +101,10 @@ fn a_checkpoint_is_of_one_render() {
     assert_eq!(other["checksum"], render(folder.path(), &["--spp", "80"])["checksum"]);
 
     refused(folder.path(), &with(&["--spp", "76"]), &["spp", "76", "80"]);
+    // A goal goes on from there, too.
+    let goal = render(folder.path(), &["--checkpoint", "c", "--target-error", "0.1"]);
+    assert_eq!(goal["checksum"], render(folder.path(), &["--spp", &goal["spp"].to_string()])["checksum"]);
+    assert!(goal["spp"].as_u64() > Some(80), "{goal}");
     for (options, said) in [
         (["--size", "48x32", "--seed", "2"], "seed"),
         (["--size", "32x48", "--seed", "1"], "height"),
@@ -170,11 +130,11 @@ fn a_damaged_checkpoint_is_refused_and_kept() {
     render(folder.path(), &options);
     let path = folder.path().join("c");
     let whole = fs::read(&path).unwrap();
-    let lengths = (0..whole.len()).step_by(whole.len() / 40).chain([1, 21, 22, 23, whole.len() - 1]);
-    let mut damaged: Vec<Vec<u8>> = lengths.map(|length| whole[..length].to_vec()).collect();
+    let lengths = [0, 1, 21, 22, 23, 40, 300, whole.len() / 2, whole.len() - 33, whole.len() - 1];
+    let mut damaged: Vec<Vec<u8>> = lengths.map(|length| whole[..length].to_vec()).into();
     damaged.push([&whole, b"x".as_slice()].concat());
     damaged.push(b"not a checkpoint, but somebody's only copy of something".to_vec());
-    for at in (0..whole.len()).step_by(whole.len() / 10) {
+    for at in (0..whole.len()).step_by(whole.len() / 4) {
         let mut flipped = whole.clone();
         flipped[at] ^= 1;
         damaged.push(flipped);

@@ -215,6 +215,12 @@ fn a_log_that_ends_at_any_byte_keeps_its_whole_rows() {
             }
             assert!(fs::read(&path).unwrap() == whole, "{cell:?}, {end} bytes: another log");
         }
+        // A power cut may leave bytes that are no text.
+        for tail in [[0; 100], [0xff; 100]] {
+            fs::write(&path, [whole.as_slice(), &tail].concat()).unwrap();
+            assert!(RecordsFile::resume(&path).unwrap().1 == rows, "{cell:?}");
+            assert!(fs::read(&path).unwrap() == whole, "{cell:?}: the tail is still there");
+        }
         // An open quote before whole rows is damage, not a torn row: nothing after it is dropped.
         let mut damaged = whole.clone();
         damaged[ends[0] as usize] = b'"';

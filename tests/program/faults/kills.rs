@@ -195,19 +195,3 @@ fn parts_killed_at_any_instant_come_to_the_same_image() {
     println!("{kills} kills of parts, {resumed} with a file to go on from");
     assert_eq!(leftovers(folder.path()), 0, "unfinished files that kills left");
 }
-
-/// A kill during the last bytes of a write leaves a whole file or none. A file torn by hand is refused.
-#[test]
-fn a_torn_checkpoint_is_refused_and_kept() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("render.checkpoint");
-    let arguments = RENDER.map(|word| if word == "720" { "32" } else { word });
-    finish(pathmark(folder.path(), &arguments)).with_code(0);
-    let whole = fs::read(&path).unwrap();
-    for length in [0, 1, 21, 22, 40, 300, whole.len() / 2, whole.len() - 33, whole.len() - 1] {
-        fs::write(&path, &whole[..length]).unwrap();
-        let refused = finish(pathmark(folder.path(), &arguments)).with_code(2);
-        assert!(refused.err.contains("checkpoint = render.checkpoint: "), "{}", refused.err);
-        assert_eq!(fs::read(&path).unwrap(), &whole[..length]);
-    }
-}
