@@ -7,9 +7,9 @@
 use crate::MpiError;
 use crate::abi::{Abi, Handle};
 use crate::launcher::Launcher;
+use libloading::os::unix::{Library as Opened, RTLD_GLOBAL, RTLD_NOW};
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
-use std::mem::transmute_copy;
-use std::os::unix::ffi::OsStrExt;
+use std::mem::{ManuallyDrop, transmute_copy};
 use std::path::{Path, PathBuf};
 
 /// Names of libraries. The launcher's library is tried first.
@@ -24,15 +24,14 @@ const OPEN_MPI: &[&str] = &["libmpi.40.dylib", "/opt/homebrew/lib/libmpi.40.dyli
 #[cfg(target_vendor = "apple")]
 const MPICH: &[&str] = &["libmpi.12.dylib", "/opt/homebrew/lib/libmpi.12.dylib", "libmpi_abi.0.dylib"];
 
-/// An open library.
+/// An open library, which is never closed.
 pub(crate) struct Symbols {
-    handle: *mut c_void,
+    opened: ManuallyDrop<Opened>,
     path: PathBuf,
 }
 
 impl Symbols {
-    /// Opens the library that the user names, or the first usual one that can be opened. It stays open to the end of
-    /// the process.
+    /// Opens the library that the user names, or the first usual one that can be opened.
     fn open(named: Option<&Path>) -> Result<Self, MpiError> {
         if let Some(path) = named {
             let no_library = |why| MpiError::NoLibrary { path: path.to_path_buf(), why };
@@ -51,14 +50,10 @@ impl Symbols {
     }
 
     fn open_one(path: &Path) -> Result<Self, String> {
-        let name = CString::new(path.as_os_str().as_bytes()).map_err(|e| e.to_string())?;
-        // SAFETY: the name ends with a zero. Open MPI's plugins look for its functions among those of the whole process.
-        let handle = unsafe { libc::dlopen(name.as_ptr(), libc::RTLD_NOW | libc::RTLD_GLOBAL) };
-        if handle.is_null() {
-            // SAFETY: dlopen has failed, so there is a message; it is copied at once.
-            return Err(unsafe { CStr::from_ptr(libc::dlerror()) }.to_string_lossy().into_owned());
-        }
-        Ok(Self { handle, path: path.to_path_buf() })
+        // SAFETY: the code that MPI's libraries run when they are opened needs nothing that Rust must keep. Open MPI's plugins
+        // look for its functions among those of the whole process.
+        let opened = unsafe { Opened::open(Some(path), RTLD_NOW | RTLD_GLOBAL) }.map_err(|e| e.to_string())?;
+        Ok(Self { opened: ManuallyDrop::new(opened), path: path.to_path_buf() })
     }
 
     /// The last part of the library's name.
@@ -68,9 +63,8 @@ impl Symbols {
 
     /// The address of a function or a variable; `None` if the library lacks it.
     pub(crate) fn address(&self, name: &CStr) -> Option<Handle> {
-        // SAFETY: the library is open, and the name ends with a zero.
-        let address = unsafe { libc::dlsym(self.handle, name.as_ptr()) };
-        (!address.is_null()).then_some(address as Handle)
+        // SAFETY: only the address is asked for.
+        unsafe { self.opened.get::<*mut c_void>(name) }.ok().map(|symbol| symbol.into_raw() as Handle)
     }
 }
 

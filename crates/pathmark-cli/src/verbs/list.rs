@@ -64,7 +64,7 @@ fn item(name: &str, about: &str) -> Item {
 fn about_column(column: &Column) -> String {
     let unit = column.unit().map_or_else(String::new, |unit| format!(" of {unit}"));
     let empty = if column.may_be_empty() { ", may be empty" } else { "" };
-    format!("{} [{}{unit}{empty}; since schema {}]", column.about.trim(), column.values(), column.since)
+    format!("{} [{}{unit}{empty}]", column.about.trim(), column.values())
 }
 
 fn scene_item(lab: &Lab, name: &str) -> Result<Item> {

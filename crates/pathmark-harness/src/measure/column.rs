@@ -7,8 +7,6 @@ pub struct Column {
     pub about: &'static str,
     /// The type of its values in this program.
     pub(super) kind: &'static str,
-    /// The first version of the columns (column `schema`) that has it.
-    pub since: u32,
 }
 
 const RENAMED: &[(&str, &str)] = &[
@@ -28,8 +26,8 @@ impl Column {
         RENAMED.iter().find(|(old, _)| *old == name).map_or(name, |(_, new)| new)
     }
 
-    pub(super) const fn new(name: &'static str, about: &'static str, kind: &'static str, since: u32) -> Self {
-        Self { name, about, kind, since }
+    pub(super) const fn new(name: &'static str, about: &'static str, kind: &'static str) -> Self {
+        Self { name, about, kind }
     }
 
     pub fn values(&self) -> &'static str {
@@ -59,12 +57,10 @@ impl Column {
 
 /// A struct with the columns of the settings between its own public fields, and the list of its fields as columns.
 macro_rules! columns {
-    (since) => { 1 };
-    (since $since:literal) => { $since };
     ({
         $(#[$meta:meta])*
         pub struct $name:ident { $($(#[doc = $f_about:literal])+ pub $f:ident: $f_kind:ty,)* }
-        settings { $($(#[doc = $l_about:literal])+ $(#[since($l_since:literal)])? pub $l:ident: $l_kind:ty,)* }
+        settings { $($(#[doc = $l_about:literal])+ pub $l:ident: $l_kind:ty,)* }
     } image { $(
         $(#[doc = $i_about:literal])+ $i_place:ident $i:ident: $i_kind:ty $(= $i_default:expr)?, $i_setting:expr
         $(, when $i_when:meta)? $(, read $i_read:meta)?;
@@ -97,12 +93,12 @@ macro_rules! columns {
         }
 
         pub const COLUMNS: &[Column] = &[
-            $(Column::new(stringify!($f), concat!($($f_about),+), stringify!($f_kind), 1),)*
+            $(Column::new(stringify!($f), concat!($($f_about),+), stringify!($f_kind)),)*
             $($(#[$i_when])?
-            Column::new(stringify!($i), concat!($($i_about),+), <$i_kind as Asked>::COLUMN, $i_setting.since),)*
+            Column::new(stringify!($i), concat!($($i_about),+), <$i_kind as Asked>::COLUMN),)*
             $($(#[$s_when])?
-            Column::new(stringify!($s), concat!($($s_about),+), <$s_kind as Asked>::COLUMN, $s_setting.since),)*
-            $(Column::new(stringify!($l), concat!($($l_about),+), stringify!($l_kind), columns!(since $($l_since)?)),)*
+            Column::new(stringify!($s), concat!($($s_about),+), <$s_kind as Asked>::COLUMN),)*
+            $(Column::new(stringify!($l), concat!($($l_about),+), stringify!($l_kind)),)*
         ];
     };
 }
@@ -111,7 +107,7 @@ pub(super) use columns;
 #[cfg(test)]
 mod tests {
     use super::{Column, RENAMED};
-    use crate::measure::{COLUMNS, Record, SCHEMA};
+    use crate::measure::{COLUMNS, Record};
 
     /// The headings of a real file, from the CSV writer.
     fn heads() -> Vec<String> {
@@ -130,7 +126,7 @@ mod tests {
     #[test]
     fn every_column_is_explained() {
         for column in COLUMNS {
-            assert!(column.about.len() > 4 && column.since <= SCHEMA, "{column:?}");
+            assert!(column.about.len() > 4, "{column:?}");
         }
     }
 
@@ -153,6 +149,5 @@ mod tests {
         );
         assert_eq!((column("scene").values(), column("dirty").values()), ("text", "true or false"));
         assert!(column("mse").may_be_empty() && !column("seed").may_be_empty());
-        assert_eq!((column("simd").since, column("scene").since), (5, 1));
     }
 }

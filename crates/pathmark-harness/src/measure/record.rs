@@ -2,7 +2,7 @@
 
 use super::column::columns;
 use super::provenance::Stamp;
-use super::{Column, ImageKey, Outcome, ScheduleKey, Setting, Settings, Setup, Warning, utc_now};
+use super::{Column, ImageKey, Outcome, ScheduleKey, Settings, Setup, Warning, utc_now};
 use crate::analysis::quantile::median;
 use crate::error::Result;
 use crate::image_io::Image;
@@ -30,28 +30,22 @@ settings_list!(columns {
     settings
     {
         /// RMSE at which the render was to stop; empty if there was no such goal.
-        #[since(4)]
         pub target_error: Option<f64>,
         /// Rounds in which jobs were handed out.
-        #[since(4)]
         pub rounds: Option<u32>,
         /// Whether an option changed what the image converges to.
         pub biased: bool,
         /// MPI library, with its version; empty if there was one process.
-        #[since(7)]
         pub mpi: String,
         /// Number of the repetition, from 0. Runs that are compared in adjacent pairs are repeated within a process, so this
         /// is the number of the process.
         pub repetition: u32,
         /// Number of the pair within the process, from 0; empty if each run had a process of its own.
-        #[since(12)]
         pub pair: Option<u32>,
         /// Place in the pair, from 0: how many of the compared cells ran before this one.
-        #[since(12)]
         pub place: Option<u32>,
         /// Runs that followed each other in this place of the pair. Runs of less than 5 ms are repeated; times and counters
         /// are then means over them. Empty outside of pairs.
-        #[since(14)]
         pub runs: Option<u32>,
         /// Position in the order in which the sweep ran.
         pub run_order: u64,
@@ -60,16 +54,12 @@ settings_list!(columns {
         /// Workers that did at least one job; empty, like all measurements, if the run failed.
         pub workers_used: Option<u32>,
         /// Seconds to build the kernel and the scene's acceleration structure.
-        #[since(3)]
         pub kernel_build_s: Option<f64>,
         /// Seconds of `kernel_build_s` to compile programs for devices; empty without devices.
-        #[since(8)]
         pub device_compile_s: Option<f64>,
         /// Seconds of `kernel_build_s` to copy the scene to devices; empty without devices.
-        #[since(8)]
         pub device_copy_s: Option<f64>,
         /// Seconds of the pilot that estimates the cost of the pieces, where the strategy needs it.
-        #[since(2)]
         pub pilot_s: Option<f64>,
         /// Seconds to create the strategy, including its thread pool if it keeps one.
         pub strategy_setup_s: Option<f64>,
@@ -80,7 +70,6 @@ settings_list!(columns {
         /// Seconds from handing over the jobs until one process has the image and its brightest channel: makespan, merge,
         /// gathering from other processes, and the search for the maximum that an exposure needs. With several processes
         /// from the barrier before the first job.
-        #[since(13)]
         pub time_to_image_s: Option<f64>,
         /// CPU seconds in the program during the makespan, over all threads.
         pub cpu_user_s: Option<f64>,
@@ -91,13 +80,10 @@ settings_list!(columns {
         /// Seconds inside jobs of the busiest worker.
         pub busy_max_s: Option<f64>,
         /// Seconds that workers spent before their first job and between jobs, over all workers.
-        #[since(2)]
         pub idle_between_jobs_s: Option<f64>,
         /// Seconds from handing over the jobs to each worker's first job, over all workers; part of `idle_between_jobs_s`.
-        #[since(12)]
         pub idle_before_first_job_s: Option<f64>,
         /// Seconds from each worker's last job to the end of the run, over all workers. Busy time, gaps and tails add up to workers x makespan.
-        #[since(2)]
         pub idle_tail_s: Option<f64>,
         /// Seconds of the shortest job.
         pub job_min_s: Option<f64>,
@@ -111,34 +97,25 @@ settings_list!(columns {
         pub involuntary_switches: Option<i64>,
         /// CPU seconds of other programs on the machine during the makespan; up to schema 9 with `steal_s`. Empty where the
         /// system does not report it.
-        #[since(2)]
         pub other_cpu_s: Option<f64>,
         /// CPU seconds that a virtual machine's host gave to others during the makespan. Empty where the system does not
         /// report it.
-        #[since(10)]
         pub steal_s: Option<f64>,
         /// Times that a worker began a job on another processor than its job before. Empty where the system does not report
         /// it, and for several processes.
-        #[since(12)]
         pub migrations: Option<u64>,
         /// Mean clock of the processors before the run, as the system reports it; empty where it does not.
-        #[since(12)]
         pub clock_start_mhz: Option<f64>,
         /// Mean clock of the processors after the run.
-        #[since(12)]
         pub clock_end_mhz: Option<f64>,
         /// Cycles of the processors in this program during the makespan; like all counters empty without the setting
         /// `counters`, and where the system does not grant it.
-        #[since(12)]
         pub cycles: Option<u64>,
         /// Instructions in this program during the makespan.
-        #[since(12)]
         pub instructions: Option<u64>,
         /// Misses of the last cache in this program during the makespan.
-        #[since(12)]
         pub cache_misses: Option<u64>,
         /// Mispredicted branches in this program during the makespan.
-        #[since(12)]
         pub branch_misses: Option<u64>,
         /// Peak resident memory of the process until the last job returned, without merging and writing of images.
         pub peak_rss_bytes: Option<i64>,
@@ -147,10 +124,8 @@ settings_list!(columns {
         /// Rays that were traced.
         pub rays: Option<u64>,
         /// Tests of a ray against a box of the acceleration structure.
-        #[since(3)]
         pub box_tests: Option<u64>,
         /// Tests of a ray against a primitive.
-        #[since(3)]
         pub primitive_tests: Option<u64>,
         /// Rays of paths that left the scene.
         pub escaped_rays: Option<u64>,
@@ -159,7 +134,6 @@ settings_list!(columns {
         /// Samples that were NaN, infinite or negative.
         pub invalid_samples: Option<u64>,
         /// RMSE in linear radiance, estimated from the samples' own variance; too large where samples are stratified.
-        #[since(4)]
         pub estimated_rmse: Option<f64>,
         /// Mean squared error in linear radiance, cross form: free of the reference's noise, so it can be negative.
         pub mse: Option<f64>,
@@ -173,27 +147,20 @@ settings_list!(columns {
         pub rel_mse: Option<f64>,
         /// Mean over pixels of the variance of a pixel's mean, estimated from the samples as if they were independent. Where
         /// subpixels or a sampler spread the samples evenly, the true error is smaller.
-        #[since(4)]
         pub variance: Option<f64>,
         /// Mean squared error, cross form, over the pixels of the object that the experiment names; NaN if the object fills no pixel.
-        #[since(6)]
         pub object_mse: Option<f64>,
         /// Share of pixels whose display value is within 0.05 of the reference's in every channel.
-        #[since(6)]
         pub within_tolerance: Option<f64>,
         /// Pixels that are brighter than the reference by more than 1, the display's white, in any channel.
-        #[since(6)]
         pub fireflies: Option<u64>,
         /// Mean radiance over pixels and channels.
         pub mean_radiance: Option<f64>,
         /// Largest finite channel of any pixel, by which `--auto-exposure` divides; several processes find it together.
-        #[since(13)]
         pub max_radiance: Option<f64>,
         /// Pixels in which every channel is 0.
-        #[since(6)]
         pub black_pixels: Option<u64>,
         /// Seconds to write the image; empty if it was not kept.
-        #[since(6)]
         pub image_write_s: Option<f64>,
         /// Checksum of the film; empty if the sampler draws different random numbers in each run.
         pub checksum: String,

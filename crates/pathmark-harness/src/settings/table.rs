@@ -36,8 +36,6 @@ pub struct Setting {
     pub(crate) label: &'static str,
     /// Its part of keys and cell ids, with `{}` for the value; empty for `/NAME-{}`.
     pub(crate) word: &'static str,
-    /// The first version of the columns that has it.
-    pub(crate) since: u32,
     /// Its place in an experiment's nesting: settings with smaller numbers vary more slowly.
     pub(crate) nested: u8,
     /// Whether it is only a second column of the setting above.
@@ -62,7 +60,6 @@ impl Setting {
         absent: "",
         label: "",
         word: "",
-        since: 1,
         nested: 0,
         is_part: false,
         field: |settings| &mut settings.scene,

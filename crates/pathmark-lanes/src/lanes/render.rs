@@ -95,6 +95,10 @@ impl<X: EffectSet, const AIMS: bool> Work for Render<'_, X, AIMS> {
 
 impl Lanes {
     fn render_by<X: EffectSet, const AIMS: bool>(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
+        // The whole kernels take most of this crate's build, and integration tests have them all.
+        if cfg!(test) {
+            unreachable!("no unit test renders");
+        }
         let splitting = if self.rules.splits > 0 { sizes_of(self.level, self.precision).lanes } else { 0 };
         let mut waiting = vec![NO_PARTS; splitting];
         let mut stacks = self.stacks();
