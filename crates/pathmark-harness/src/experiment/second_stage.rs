@@ -43,7 +43,8 @@ impl SecondStage {
 /// The processes that a comparison needs, from those of its first stage; `None` if these suffice or tell nothing.
 fn needed(decisions: &Decisions, (what, with): (&str, &str), goal: f64, first: u32) -> Option<u32> {
     let found = decisions.paired_before(what, with, first)?;
-    let missing = (half_width(&found) / goal).powi(2) - 1.0;
+    let times_goal = half_width(&found) / goal;
+    let missing = times_goal * times_goal - 1.0;
     (missing > 0.0).then(|| (f64::from(first) * (1.0 + (1.0 + RESERVE) * missing)).ceil() as u32)
 }
 
