@@ -22,7 +22,6 @@ mod vertex;
 mod window;
 
 pub(crate) use kernel::LANES;
-#[cfg(feature = "device")]
 pub(crate) use kernel::MOST_IN_LANES;
 #[cfg(feature = "device")]
 pub(crate) use spheres_f32::SpheresF32;
