@@ -73,6 +73,15 @@ fn rows_of_other_harnesses_are_judged() {
     let of = |key: &str| told.iter().map(|row| row[key].as_str().unwrap()).collect::<Vec<_>>();
     assert_eq!(of("verdict"), ["confirmed", "confirmed"], "{told:?}");
     assert!(of("measured")[0].starts_with("110"), "{told:?}");
+    // Estimates alone are one row, of the slope.
+    let own = folder.path().join("criterion/sort/radix/100/new");
+    fs::remove_file(own.join("sample.json")).unwrap();
+    let [mean, slope] = [150.0, 200.0].map(|estimate| json!({ "point_estimate": estimate }));
+    fs::write(own.join("estimates.json"), json!({ "mean": mean, "slope": slope }).to_string()).unwrap();
+    let rows = String::from_utf8(convert(folder.path(), "from_criterion.py", "criterion").stdout).unwrap();
+    let of_hundred: Vec<&str> = rows.lines().filter(|row| row.starts_with("sort,radix,100,")).collect();
+    assert_eq!(of_hundred, ["sort,radix,100,0,2e-07,"]);
+    assert_eq!(rows.lines().count(), 1 + 1 + 3 + 3, "{rows}");
     // The rows tell their time, so that they are known to be younger than a bound of 2001.
     let text = fs::read_to_string(example("sorting.toml")).unwrap();
     let old = text.replace("2026-11-28T05:00:00Z", "2001-01-01T00:00:00Z");

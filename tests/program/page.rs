@@ -215,13 +215,16 @@ fn each_experiment_has_a_page_beside_the_whole_one() {
     }
     assert!(links(&read("index.html")).contains(&"other.html".to_string()));
     assert!(read("tiny.html").contains("id=\"tiny-speedup\"") && !read("tiny.html").contains("id=\"other-speedup\""));
-    // The folder of an experiment has a page of its own, too.
+    // The folder of an experiment has a page of its own, too, wherever one stands.
     let own = folder.path().join("out/tiny");
-    finish(pathmark(folder.path(), &["report", "out/tiny"])).with_code(0);
-    let html = fs::read_to_string(own.join("report.html")).unwrap();
-    assert!(html.contains("id=\"tiny-speedup\""));
-    for link in links(&html) {
-        assert!(own.join(&link).is_file(), "{link} leads nowhere");
+    for (from, name) in [(folder.path(), "out/tiny"), (own.as_path(), ".")] {
+        finish(pathmark(from, &["report", name])).with_code(0);
+        let html = fs::read_to_string(own.join("report.html")).unwrap();
+        assert!(html.contains("id=\"tiny-speedup\""), "{name}");
+        for link in links(&html) {
+            assert!(own.join(&link).is_file(), "{name}: {link} leads nowhere");
+        }
+        fs::remove_file(own.join("report.html")).unwrap();
     }
 }
 

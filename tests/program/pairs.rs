@@ -74,6 +74,61 @@ fn compared_cells_run_in_turns() {
     assert!(figure.contains("work-stealing"), "{figure}");
 }
 
+/// Comparisons that missed their goal have as many processes as the profile allows; other cells have those of the first
+/// stage. Where the goal is reached, or the command sets the repetitions, there is no second stage.
+#[test]
+fn comparisons_that_missed_their_goal_get_more_processes() {
+    let goal = |goal: &str, most: &str| {
+        let stages = format!("repetitions = {{ at-least = 3, {most} }}");
+        compared(&format!("with = {{ strategy = [\"serial\"] }}\n{goal}")).replace("repetitions = 3", &stages)
+    };
+    let counts = |folder: &Path| {
+        let rows = rows(&folder.join("out/tiny"));
+        let processes = |paired: bool| -> BTreeSet<u32> {
+            rows.iter().filter(|run| run.2.is_some() == paired).map(|run| run.1).collect()
+        };
+        [processes(false).len(), processes(true).len(), rows.len()]
+    };
+    let tiny = |text: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        write_tiny(folder.path(), text);
+        folder
+    };
+    let folder = tiny(&goal("goal = \"0.0001 %\"", "at-most = 5"));
+    let said = run(folder.path(), &["run", "tiny.toml"], 0).err;
+    assert!(said.contains("2 comparisons missed their precision in 3 processes and get more"), "{said}");
+    assert_eq!(counts(folder.path()), [3, 5, 2 * 3 + 3 * 5 * 2]);
+    // Nothing is left to do, and a process of the second stage that was lost is run again.
+    let records = folder.path().join("out/tiny/records.csv");
+    let whole = fs::read_to_string(&records).unwrap();
+    run(folder.path(), &["run", "tiny.toml", "--resume"], 0);
+    assert_eq!(fs::read_to_string(&records).unwrap(), whole);
+    let kept = whole.split_inclusive('\n').enumerate().filter(|(line, row)| *line == 0 || !rows_of_process(row, 4));
+    fs::write(&records, kept.map(|(_, row)| row).collect::<String>()).unwrap();
+    assert_eq!(counts(folder.path()), [3, 4, 2 * 3 + 3 * 4 * 2]);
+    run(folder.path(), &["run", "tiny.toml", "--resume"], 0);
+    assert_eq!(counts(folder.path()), [3, 5, 2 * 3 + 3 * 5 * 2]);
+
+    for (text, options, expected) in [
+        (goal("goal = \"10000 %\"", "at-most = 5"), &[][..], [3, 3, 24]),
+        (goal("goal = \"0.0001 %\"", "at-most = 5, max-time = \"1ms\""), &[], [3, 3, 24]),
+        (goal("goal = \"0.0001 %\"", "at-most = 5"), &["--repetitions", "3"], [3, 3, 24]),
+    ] {
+        let folder = tiny(&text);
+        run(folder.path(), &[&["run", "tiny.toml"], options].concat(), 0);
+        assert_eq!(counts(folder.path()), expected, "{text}");
+    }
+    for (text, said) in [
+        (goal("", "at-most = 5"), ["tiny.toml", "at-least", "none has a goal"]),
+        (goal("goal = \"1 %\"", "at-most = 3"), ["tiny.toml", "at-most = 3", "more than at-least = 3"]),
+    ] {
+        let folder = tiny(&text);
+        let refused = run(folder.path(), &["run", "tiny.toml"], 2);
+        assert!(said.iter().all(|part| refused.err.contains(part)), "{}", refused.err);
+        assert!(!folder.path().join("out").exists());
+    }
+}
+
 /// A tiny image takes far less than 5 ms, so a row is the mean of several runs; a run outside of pairs is a row.
 #[test]
 fn short_runs_are_repeated_within_a_turn() {

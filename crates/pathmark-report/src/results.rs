@@ -37,7 +37,10 @@ pub struct Results {
 impl Results {
     pub fn read(lab: &Arc<Lab>, out: &Path, folder: &Path) -> Result<Self> {
         let path = folder.join("experiment.toml");
-        let name = folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        // The folder `.` has its name elsewhere.
+        let whole =
+            if folder.file_name().is_none() { folder.canonicalize().unwrap_or_default() } else { folder.to_path_buf() };
+        let name = whole.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let definition = Definition::from_text(lab, &name, &path.display().to_string(), &read_text(&path)?)?;
         let run = read_run_file(&folder.join("machine.toml"))?;
         let path = records_path(folder);

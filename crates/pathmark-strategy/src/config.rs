@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 
-use crate::Discipline;
+use crate::{Discipline, Workers};
 
 /// The configuration of a strategy.
 #[derive(Clone)]
@@ -41,7 +41,7 @@ pub struct Blueprint {
 impl Blueprint {
     /// Returns the number of workers for so many jobs.
     pub fn workers(&self, jobs: usize) -> usize {
-        self.threads.get().min(jobs)
+        Workers::Threads.at_once(self.threads.get(), jobs)
     }
 }
 

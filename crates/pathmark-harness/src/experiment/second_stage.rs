@@ -2,8 +2,9 @@
 //!
 //! A profile asks for it by `repetitions = { at-least = 16, at-most = 48, max-time = "2min" }`. All cells run in the
 //! first stage. Its spread tells how many processes each comparison needs (C. Stein, "A two-sample test for a linear
-//! hypothesis whose power is independent of the variance", 1945). Only the spread decides, and only once, so an interval
-//! over both stages keeps its level.
+//! hypothesis whose power is independent of the variance", 1945). Only the spread decides, and only once. Unlike Stein's
+//! intervals, those over both stages use the spread of all processes; by simulation they keep their level to within 1.4 %.
+//! Resumed after `max-time` has ended it, the second stage goes on.
 
 use super::Progress;
 use super::running::Running;

@@ -222,11 +222,9 @@ fn by_estimator<S: Sampler + 'static, X: EffectSet>(
     with_estimator(options.estimator.name, options.options, visitor).flatten()
 }
 
-/// Whether scalar kernels of the estimator are compiled for the profile. Unit tests call through pointers, which gives the
-/// same bits: these kernels take most of the crate's build, and integration tests have them.
+/// Whether scalar kernels of the estimator are compiled for the profile.
 const fn is_compiled<E: Estimator, X: EffectSet>() -> bool {
     match E::COMPILED {
-        _ if cfg!(test) => false,
         CompiledFor::EveryProfile => true,
         CompiledFor::Common => X::EFFECTS.is(SmallptEffects::EFFECTS) || X::EFFECTS.is(AllEffects::EFFECTS),
         CompiledFor::WithAllEffects => X::EFFECTS.is(AllEffects::EFFECTS),
