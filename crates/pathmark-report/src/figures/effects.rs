@@ -70,10 +70,7 @@ struct Times {
 
 /// Keeps the setting, but neither the scene nor the choices that fit it, so that rows with and without an effect pair.
 fn setting(image: &mut ImageKey, schedule: &mut ScheduleKey) {
-    image.scene.clear();
-    image.scene_hash.clear();
-    image.max_depth = None;
-    image.roulette.clear();
+    image.forget_scene();
     schedule.forget_kernel();
 }
 

@@ -81,14 +81,14 @@ fn accuracies(results: &Results) -> Result<Vec<Accuracy>> {
         let radiance = images.iter().sum::<f64>() / images.len() as f64;
         let first = *rows.first()?;
         let mse = |row: &Row| Some(row.mse? / (radiance * radiance));
-        let squares = Repeats::of_images(rows.iter().copied(), without_scene, mse).values();
+        let squares = Repeats::of_images(rows.iter().copied(), ImageKey::forget_scene, mse).values();
         let interval = over_seeds(&squares, LEVEL).map(|error| error.rmse.interval);
         let error = Estimated::of((squares.iter().sum::<f64>() / squares.len() as f64).sqrt(), interval);
         let series = results.series_name(first);
         let accuracy = Accuracy {
             name: if series.is_empty() { image.scene.clone() } else { series },
             radiance,
-            by_seed: Repeats::of_images(rows.iter().copied(), without_scene, |row| Some(mse(row)?.sqrt())),
+            by_seed: Repeats::of_images(rows.iter().copied(), ImageKey::forget_scene, |row| Some(mse(row)?.sqrt())),
             error,
             rays: typical(&rows, |row| Some(row.rays? as f64 / row.samples? as f64))?,
             sample_s: typical(&rows, |row| Some(row.cpu_s()? / row.samples? as f64))?,
@@ -104,18 +104,10 @@ fn kind(row: &Row) -> ImageKey {
     row.image.without_seed()
 }
 
-/// Clears the scene, and what a scene decides.
-fn without_scene(image: &mut ImageKey) {
-    image.scene.clear();
-    image.scene_hash.clear();
-    image.max_depth = None;
-    image.roulette.clear();
-}
-
 /// The setting of an image apart from its scene and seed. Errors in different settings are not compared.
 fn setting(scene: &Accuracy) -> ImageKey {
     let mut image = scene.image.clone();
-    without_scene(&mut image);
+    image.forget_scene();
     image
 }
 
