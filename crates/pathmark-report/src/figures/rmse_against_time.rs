@@ -6,8 +6,7 @@
 
 use crate::analysis::jackknife::Curve as ErrorCurve;
 use crate::analysis::measured_price::{Crossing, MeasuredPrice, Timed};
-use crate::analysis::mse::over_seeds;
-use crate::contenders::{curves_of_seeds, one_per_seed, root_of_mean};
+use crate::contenders::{curves_of_seeds, one_per_seed};
 use crate::plot::Panels;
 use crate::prelude::*;
 
@@ -92,9 +91,7 @@ fn lines(results: &Results) -> Vec<Line<'_>> {
     let cells = groups.iter().flat_map(|(of, rows)| {
         let by_spp = group(rows.iter().copied(), |row| row.spp).into_iter();
         by_spp.map(move |(spp, rows)| {
-            let mse = one_per_seed(&rows, |row| row.mse);
-            let interval = over_seeds(&mse, LEVEL).map(|error| error.rmse.interval);
-            let rmse = Estimated { count: Some(mse.len()), ..Estimated::of(root_of_mean(&mse), interval) };
+            let rmse = Estimated::rmse(&one_per_seed(&rows, |row| row.mse));
             ((of, spp, rmse), Repeats::of_rows(rows, |row| row.rendering_s()))
         })
     });

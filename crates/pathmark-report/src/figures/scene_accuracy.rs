@@ -2,7 +2,6 @@
 //! accurate; a control exchanges the materials of one scene.
 
 use crate::analysis::mean::t_interval;
-use crate::analysis::mse::over_seeds;
 use crate::analysis::rank::spearman;
 use crate::prelude::*;
 
@@ -82,8 +81,7 @@ fn accuracies(results: &Results) -> Result<Vec<Accuracy>> {
         let first = *rows.first()?;
         let mse = |row: &Row| Some(row.mse? / (radiance * radiance));
         let squares = Repeats::of_images(rows.iter().copied(), ImageKey::forget_scene, mse).values();
-        let interval = over_seeds(&squares, LEVEL).map(|error| error.rmse.interval);
-        let error = Estimated::of((squares.iter().sum::<f64>() / squares.len() as f64).sqrt(), interval);
+        let error = Estimated { count: None, ..Estimated::rmse(&squares) };
         let series = results.series_name(first);
         let accuracy = Accuracy {
             name: if series.is_empty() { image.scene.clone() } else { series },
