@@ -189,7 +189,7 @@ pub fn write_paper(lab: &Arc<Lab>, out: &Path, file: &Path) -> Result<()> {
     }
     let complete = |path: &Path| path.canonicalize().map_err(|e| Error::system("looking for", path, e));
     let beside = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let way = paper::way(&complete(beside)?, &complete(out)?);
+    let way = page::way(&complete(beside)?, &complete(out)?);
     let text = paper::text(&parts, &way.display().to_string().replace('\\', "/"));
     atomic_file::write(file, |file| file.write_all(text.as_bytes()))
 }

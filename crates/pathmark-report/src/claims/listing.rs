@@ -9,14 +9,14 @@ use crate::atomic_file;
 use crate::block::Block;
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
-use crate::page::href;
+use crate::page::{href, way};
 use crate::plot::number;
 use crate::prelude::{counted, joined};
 use crate::table::Table;
 use crate::words::capital;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 /// Name of the verdicts' folder within the results.
 pub const FOLDER: &str = "claims";
@@ -317,10 +317,8 @@ fn counts(answers: &[Answer<'_>]) -> Vec<(String, Vec<usize>)> {
 
 /// The path of a file as seen from a folder; the path itself if either is not there.
 fn seen_from(folder: &Path, file: &Path) -> PathBuf {
-    let Some((from, to)) = folder.canonicalize().ok().zip(file.canonicalize().ok()) else { return file.to_path_buf() };
-    let shared = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
-    let up = from.components().skip(shared).map(|_| Component::ParentDir);
-    up.chain(to.components().skip(shared)).collect()
+    let complete = folder.canonicalize().ok().zip(file.canonicalize().ok());
+    complete.map_or_else(|| file.to_path_buf(), |(from, to)| way(&from, &to))
 }
 
 /// The verdicts as a text; paths of sources are relative to `base`. Findings are a table.

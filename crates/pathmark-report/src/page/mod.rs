@@ -23,7 +23,7 @@ use crate::plot::Figure;
 use crate::prelude::joined;
 use crate::results::Results;
 use crate::words::counted;
-pub(crate) use address::href;
+pub(crate) use address::{href, way};
 use again::Again;
 use block::Block;
 use compact::Styles;
