@@ -14,6 +14,9 @@ use crate::measure::{SETTINGS, Setting};
 use crate::prelude::*;
 use std::iter::once;
 
+/// The RMSEs that figures price, in linear radiance.
+pub(super) const GOALS: [f64; 4] = [0.1, 0.05, 0.02, 0.01];
+
 /// An estimator with a sampler and a schedule, on a scene.
 pub(super) struct Contender {
     /// Distinguishes it from the others.

@@ -8,8 +8,6 @@ use crate::prelude::*;
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Options {
-    /// Error at which prices are compared, relative to the mean radiance.
-    goal: Option<Positive>,
     /// The same box with three pairs of balls.
     control: Option<Control>,
 }
@@ -19,7 +17,6 @@ pub(super) struct Options {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Control {
     /// With diffuse balls.
-    #[serde(alias = "matt")]
     diffuse: String,
     /// With a mirror and a glass ball.
     glass: String,
@@ -46,15 +43,16 @@ struct Accuracy {
 }
 
 impl Accuracy {
-    /// CPU seconds until the image has this error, which falls with the root of the samples.
-    fn price_s(&self, goal: f64) -> f64 {
-        let spp = f64::from(self.image.spp) * (self.error.value / goal) * (self.error.value / goal);
+    /// CPU seconds until the image has an error of 1 % of the mean radiance; errors fall with the root of the samples.
+    fn price_s(&self) -> f64 {
+        let times = self.error.value / 0.01;
+        let spp = f64::from(self.image.spp) * times * times;
         spp * self.pixels * self.sample_s
     }
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { goal, control } = options(&results.definition, "scene-accuracy")?;
+    let Options { control } = options(&results.definition, "scene-accuracy")?;
     let mut scenes = accuracies(results)?;
     if scenes.is_empty() {
         let text = "There is no accuracy by scene: it takes errors against references, and the kept images.";
@@ -65,7 +63,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut blocks = vec![Block::figure("scene-accuracy", chart(results, &scenes, correlation.as_ref()))];
     blocks.extend(correlation.as_ref().map(claim));
     blocks.extend(control.and_then(|control| controlled(&scenes, &control)));
-    blocks.push(table(&scenes, goal.map_or(0.01, |goal| goal.0)));
+    blocks.push(table(&scenes));
     Ok(blocks)
 }
 
@@ -202,7 +200,7 @@ fn controlled(scenes: &[Accuracy], control: &Control) -> Option<Block> {
     )))
 }
 
-fn table(scenes: &[Accuracy], goal: f64) -> Block {
+fn table(scenes: &[Accuracy]) -> Block {
     let variance = |scene: &Accuracy| f64::from(scene.image.spp) * scene.error.value * scene.error.value;
     Block::table("scene-accuracy-table", "Accuracy by scene, most accurate first", scenes)
         .column("scene", |scene| scene.name.clone())
@@ -215,6 +213,6 @@ fn table(scenes: &[Accuracy], goal: f64) -> Block {
         .number("efficiency, 1 / (relative variance of a sample x µs)", Decimals(4), |scene| {
             1.0 / (variance(scene) * scene.sample_s * 1e6)
         })
-        .number(format!("processor seconds to {} % error", 100.0 * goal), Decimals(2), |scene| scene.price_s(goal))
+        .number("processor seconds to 1 % error", Decimals(2), |scene| scene.price_s())
         .end()
 }
