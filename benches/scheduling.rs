@@ -214,11 +214,11 @@ fn main() {
         return;
     }
     let mut speedups = Speedups::default();
-    let rows = bench::run(&units, |criterion| {
+    bench::run(&units, |criterion| {
         scheduling(criterion, &mut speedups);
         empty_jobs(criterion);
         seam(criterion);
         trace(criterion);
     });
-    speedups.finish(rows);
+    speedups.finish();
 }

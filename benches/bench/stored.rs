@@ -1,7 +1,7 @@
 //! The medians that criterion has just stored. Criterion calls its files a private detail, so they are read only here;
 //! missing or unreadable files are left out.
 
-use pathmark::report::BenchRow;
+use super::BenchRow;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -52,8 +52,5 @@ fn case(folder: &Path) -> Option<BenchRow> {
         median_s: seconds(median.get("point_estimate"))?,
         low_s: seconds(interval.get("lower_bound"))?,
         high_s: seconds(interval.get("upper_bound"))?,
-        speedup: None,
-        speedup_low: None,
-        speedup_high: None,
     })
 }

@@ -1,6 +1,6 @@
 //! The tables at the end of a bench program.
 
-use pathmark::report::BenchRow;
+use super::BenchRow;
 use std::collections::BTreeSet;
 
 /// Columns of a table of cases by parameters; with one more, lines would wrap.

@@ -2,19 +2,14 @@
 //!
 //! Cases that follow one another would leave the machine's drift in their ratios. A process has one memory layout, so the
 //! pairs are repeated in further processes: this program starts itself with [`CASES`] in its environment.
-//!
-//! With `PATHMARK_BENCH_OUT=DIR` the cases and their speedups are also written into that results folder, where
-//! `pathmark report DIR` finds them.
 
 use pathmark::analysis::Estimate;
 use pathmark::analysis::adjacent_pairs::paired_ratio;
 use pathmark::analysis::quantile::median;
 use pathmark::analysis::ranking::{groups, told_apart_in_pairs};
 use pathmark::measure::available_threads;
-use pathmark::report::{BenchRow, write_benches};
 use std::collections::{BTreeMap, BTreeSet};
 use std::env;
-use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -76,27 +71,12 @@ impl Speedups {
         processes[0].extend(ratios);
     }
 
-    /// Repeats the pairs in further processes, prints the speedups, and writes the cases into a folder of results.
-    pub(crate) fn finish(&mut self, mut rows: Vec<BenchRow>) {
+    /// Repeats the pairs in further processes, and prints the speedups.
+    pub(crate) fn finish(&mut self) {
         if !self.0.is_empty() {
             self.repeat();
             self.print(available_threads());
-            rows.iter_mut().filter(|row| row.group == "scheduling").for_each(|row| self.label(row));
         }
-        let Some(out) = env::var_os("PATHMARK_BENCH_OUT").filter(|_| !rows.is_empty()) else { return };
-        let filter: Vec<String> = env::args().skip(1).filter(|argument| argument != "--bench").collect();
-        let filter = if filter.is_empty() { String::new() } else { format!(" -- {}", filter.join(" ")) };
-        if let Err(error) = write_benches(Path::new(&out), format!("cargo bench --bench scheduling{filter}"), &rows) {
-            eprintln!("{error}");
-        }
-    }
-
-    /// Adds a case's speedup to its row.
-    fn label(&self, row: &mut BenchRow) {
-        let found = self.0.get(&name(&row.case, &row.parameter)).and_then(|own| paired_ratio(own, LEVEL));
-        row.speedup = found.map(|found| found.ratio.value);
-        row.speedup_low = found.map(|found| found.ratio.interval.low);
-        row.speedup_high = found.map(|found| found.ratio.interval.high);
     }
 
     /// Repeats all cases in further processes.

@@ -72,21 +72,6 @@ fn two_other_programs_of_one_name() {
     refused(folder.path(), &RUN, 2, &["tiny.toml:", "name = other"]);
 }
 
-/// A job of a long run, and interruptions so short that there would be billions of them.
-#[test]
-fn noise_that_takes_for_ever_to_draw() {
-    let folder = in_memory();
-    let render = ["render", "cornell", "--size", "8x8", "--spp", "4", "--strategy", "serial", "--trace", "run.csv"];
-    finish(pathmark(folder.path(), &render)).with_code(0);
-    let text = fs::read_to_string(folder.path().join("run.csv")).unwrap();
-    let job = text.lines().nth(2).unwrap();
-    let mut fields: Vec<&str> = job.split(',').collect();
-    fields[3] = "100000.0";
-    fs::write(folder.path().join("run.csv"), text.replace(job, &fields.join(","))).unwrap();
-    let arguments = ["simulate", "run.csv", "--no-check", "--out", "new", "--noise", ".9:.001"];
-    refused(folder.path(), &arguments, 2, &["noise = .9:.001", "times"]);
-}
-
 /// Files that never end and paths that are no files, under a memory limit that an unbounded reader would reach.
 #[test]
 fn files_without_an_end() {

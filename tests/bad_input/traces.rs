@@ -54,8 +54,7 @@ fn a_trace_that_asks_for_too_many_jobs_is_refused() {
 fn options_that_make_no_sense_are_refused() {
     let folder = in_memory();
     finish(pathmark(folder.path(), &RENDER)).with_code(0);
-    let cases: [(&[&str], &[&str]); 12] = [
-        (&["--noise", "0.5:1e-9"], &["noise", "0.5:1e-9", "0.001 ms"]),
+    let cases: [(&[&str], &[&str]); 10] = [
         (&["--slow-core", "8"], &["slow-core", "8", "0.01 to 1"]),
         (&["--strategies", "thread-per-row"], &["strategy", "thread-per-row", "thread-per-job"]),
         (&["--workers", "0"], &["workers", "0", "1.."]),
@@ -64,7 +63,6 @@ fn options_that_make_no_sense_are_refused() {
         (&["--slow-core", "0"], &["slow-core", "0"]),
         (&["--slow-core", "NaN"], &["slow-core", "NaN"]),
         (&["--efficiency-cores", "4"], &["efficiency-cores", "4"]),
-        (&["--noise", "1.5"], &["noise", "1.5", "0.9"]),
         (&["--strategies", "magic"], &["strategy", "magic", "work-stealing"]),
         (&["--strategies", "dynamic:x"], &["dynamic"]),
     ];

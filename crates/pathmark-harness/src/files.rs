@@ -24,6 +24,15 @@ pub fn create_folder(field: &str, folder: &Path) -> Result<()> {
     })
 }
 
+/// The paths of a folder's files and folders, sorted.
+pub fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
+    let system = |e| Error::system("reading", folder, e);
+    let paths = fs::read_dir(folder).map_err(system)?.map(|entry| Ok(entry.map_err(system)?.path()));
+    let mut paths = paths.collect::<Result<Vec<PathBuf>>>()?;
+    paths.sort();
+    Ok(paths)
+}
+
 #[derive(Debug)]
 enum Use {
     /// The command reads the file, which the user knows by this description.

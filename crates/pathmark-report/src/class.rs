@@ -3,6 +3,7 @@
 
 use crate::error::{Error, InputError};
 use crate::experiment::{Chapter, MACHINE, has_records, read_run_file};
+use crate::files::entries;
 use crate::page::Section;
 use crate::prelude::*;
 use crate::schedule::crew;
@@ -61,15 +62,14 @@ fn member(folder: PathBuf) -> Result<Member> {
 }
 
 fn folders(out: &Path) -> Result<Vec<PathBuf>> {
-    let entries = std::fs::read_dir(out).map_err(|e| match e.kind() {
-        ErrorKind::NotFound | ErrorKind::NotADirectory => {
+    let mut found = entries(out).map_err(|error| match &error {
+        Error::System { source, .. } if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&source.kind()) => {
             InputError::new("folder", out.display().to_string(), "there is no such folder").into()
         }
-        _ => Error::system("reading", out, e),
+        _ => error,
     })?;
-    let paths = entries.map(|entry| Ok(entry.map_err(|e| Error::system("reading", out, e))?.path()));
-    let paths = paths.collect::<Result<Vec<PathBuf>>>()?;
-    Ok(paths.into_iter().filter(|path| path.is_dir()).collect())
+    found.retain(|path| path.is_dir());
+    Ok(found)
 }
 
 /// The section of an experiment; if it is a student's, the heading begins with the folder's name, and it is no answer of

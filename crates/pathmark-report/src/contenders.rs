@@ -8,10 +8,14 @@ use crate::analysis::mean::geometric_interval;
 use crate::analysis::mse::over_seeds;
 use crate::analysis::price::{Law, Renderer};
 use crate::error::InputError;
+use crate::estimated::root_of_mean;
 use crate::experiment::{EXTERNAL, law_of};
 use crate::measure::{SETTINGS, Setting};
 use crate::prelude::*;
 use std::iter::once;
+
+/// The RMSEs that figures price, in linear radiance.
+pub(super) const GOALS: [f64; 4] = [0.1, 0.05, 0.02, 0.01];
 
 /// An estimator with a sampler and a schedule, on a scene.
 pub(super) struct Contender {
@@ -150,12 +154,6 @@ fn by_seed(rows: &[&Row], value: impl Fn(&Row) -> Option<f64>) -> BTreeMap<u64, 
     images.retain(|_, values| values.len() == seeds.len());
     let mean = |seed| images.values().filter_map(|values| values.get(&seed)).sum::<f64>() / images.len() as f64;
     seeds.into_iter().filter(|_| !images.is_empty()).map(|seed| (seed, mean(seed))).collect()
-}
-
-/// The root of the mean, not the mean of roots, as the cross form requires. NaN, which charts leave out, if the mean is
-/// negative.
-pub(super) fn root_of_mean(mse: &[f64]) -> f64 {
-    (mse.iter().sum::<f64>() / mse.len() as f64).sqrt()
 }
 
 /// The contenders of each scene: scenes by name, with the image size if there are several, because seconds of different

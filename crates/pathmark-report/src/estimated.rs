@@ -2,6 +2,7 @@
 
 use crate::analysis::confidence_sequence::Stopping;
 use crate::analysis::mean::{Moments, geometric_interval, t_interval};
+use crate::analysis::mse::over_seeds;
 use crate::analysis::quantile::median;
 use crate::analysis::{Estimate, Interval};
 use crate::plot::{Dot, Point};
@@ -9,6 +10,12 @@ use serde::Serialize;
 
 /// Confidence of every interval in the report.
 pub const LEVEL: f64 = 0.95;
+
+/// The root of the mean, not the mean of roots, as the cross form requires. NaN, which charts leave out, if the mean is
+/// negative.
+pub(super) fn root_of_mean(mse: &[f64]) -> f64 {
+    (mse.iter().sum::<f64>() / mse.len() as f64).sqrt()
+}
 
 /// A value and its interval, if there were enough values for one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -53,6 +60,12 @@ impl Estimated {
     pub(super) fn mean(values: &[f64]) -> Option<Self> {
         let interval = t_interval(values, LEVEL).map(|estimate| estimate.interval);
         Some(Self { count: Some(values.len()), ..Self::of(Moments::of(values).mean()?, interval) })
+    }
+
+    /// The error of images with these squared errors, one for each seed.
+    pub(super) fn rmse(mse: &[f64]) -> Self {
+        let interval = over_seeds(mse, LEVEL).map(|error| error.rmse.interval);
+        Self { count: Some(mse.len()), ..Self::of(root_of_mean(mse), interval) }
     }
 
     /// The same value in another unit.

@@ -36,7 +36,6 @@ pub mod words;
 pub use crops::Crop;
 pub use estimated::{Estimated, LEVEL};
 pub use figures::{FIGURES, FigureEntry, check_figures, figure_of_serial};
-pub use page::benches::{BenchRow, write_benches};
 pub use page::block::Block;
 pub use page::replication;
 pub use results::Results;
@@ -47,7 +46,7 @@ use crate::experiment::{MACHINE, records_path};
 use crate::files::{Files, create_folder};
 use crate::lab::Lab;
 use class::{Class, Member, members};
-use page::{Section, benches, block, doctor, guards, table};
+use page::{Section, block, doctor, guards, table};
 use paper::Part;
 use pathmark_harness::{
     analysis, atomic_file, cases_file, cluster, csv_file, digest, error, experiment, files, film_file, guard_prices,
@@ -137,7 +136,7 @@ fn sections(lab: &Arc<Lab>, out: &Path) -> Result<Vec<Section>> {
     if let Some(section) = class.section(out) {
         add(out, section)?;
     }
-    for section in [guards::section(out)?, page::bursts::section(out)?, benches::section(out)?].into_iter().flatten() {
+    for section in [guards::section(out)?, page::bursts::section(out)?].into_iter().flatten() {
         add(&out.join(&section.name), section)?;
     }
     if !sections.is_empty() {
@@ -188,7 +187,7 @@ pub fn write_paper(lab: &Arc<Lab>, out: &Path, file: &Path) -> Result<()> {
     }
     let complete = |path: &Path| path.canonicalize().map_err(|e| Error::system("looking for", path, e));
     let beside = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let way = paper::way(&complete(beside)?, &complete(out)?);
+    let way = page::way(&complete(beside)?, &complete(out)?);
     let text = paper::text(&parts, &way.display().to_string().replace('\\', "/"));
     atomic_file::write(file, |file| file.write_all(text.as_bytes()))
 }

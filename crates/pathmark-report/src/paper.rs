@@ -11,7 +11,6 @@ use crate::estimated::LEVEL;
 use crate::rows::{group, values};
 use crate::table::Table;
 use std::collections::BTreeSet;
-use std::path::{Component, Path, PathBuf};
 
 /// Most rows of a table; the others are in its CSV file.
 const MOST_ROWS: usize = 25;
@@ -224,15 +223,6 @@ fn table_of(experiment: &str, stem: &str, table: &Table) -> String {
     )
 }
 
-/// The way from a folder to another one, both as complete paths.
-pub(super) fn way(from: &Path, to: &Path) -> PathBuf {
-    let (from, to): (Vec<Component<'_>>, Vec<Component<'_>>) = (from.components().collect(), to.components().collect());
-    let common = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
-    let up = from[common..].iter().map(|_| Component::ParentDir);
-    let way: PathBuf = up.chain(to[common..].iter().copied()).collect();
-    if way.as_os_str().is_empty() { PathBuf::from(".") } else { way }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -291,13 +281,5 @@ mod tests {
         };
         assert!(paper(&["schedules"], rows(9.0)).contains("\\bibitem{olsson2005}"));
         assert!(!paper(&["schedules"], rows(1.1)).contains("olsson2005"));
-    }
-
-    #[test]
-    fn ways_between_folders_are_relative() {
-        let of = |from: &str, to: &str| way(Path::new(from), Path::new(to)).display().to_string();
-        assert_eq!(of("/a/b", "/a/b"), ".");
-        assert_eq!(of("/a/b", "/a/b/out"), "out");
-        assert_eq!(of("/a/paper", "/a/out"), "../out");
     }
 }

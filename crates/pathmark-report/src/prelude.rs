@@ -6,7 +6,7 @@ pub(crate) use crate::analysis::{Estimate, Interval};
 pub(crate) use crate::block::Block;
 pub(crate) use crate::error::Result;
 pub(crate) use crate::estimated::{Estimated, LEVEL};
-pub(crate) use crate::figures::options::{Positive, options, yardstick};
+pub(crate) use crate::figures::options::{options, yardstick};
 pub(crate) use crate::measure::{ImageKey, ScheduleKey};
 pub(crate) use crate::naming::joined;
 pub(crate) use crate::paired::{

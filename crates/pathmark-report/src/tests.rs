@@ -360,14 +360,14 @@ fn refusal(figures: &[&str], more: &str) -> String {
 #[test]
 fn options_that_a_figure_does_not_have_are_refused_at_their_line() {
     let cases = [
-        ("[figure.price-list]\ngoal = 0.1", "mine.toml:6:1", "goals"),
-        ("[figure.price-list]\ngoals = [0.1, -2.0]", "mine.toml:6:", "positive"),
-        ("[figure.price-list]\ngoals = \"few\"", "mine.toml:6:", "goals"),
+        ("[figure.forecast]\ncore = [2]", "mine.toml:6:1", "cores"),
+        ("[figure.forecast]\ncores = [2, 0]", "mine.toml:6:", "nonzero"),
+        ("[figure.forecast]\ncores = \"few\"", "mine.toml:6:", "few"),
         ("[figure.speedup]\nyardstick = \"serial\"", "mine.toml:6:1", "yardstick"),
-        ("[figure.clock]\n", "mine.toml:5:1", "price-list, speedup"),
+        ("[figure.clock]\n", "mine.toml:5:1", "forecast, speedup"),
     ];
     for (more, place, word) in cases {
-        let error = refusal(&["price-list", "speedup"], more);
+        let error = refusal(&["forecast", "speedup"], more);
         assert!(error.contains(place) && error.contains(word), "{more}: {error}");
     }
 }

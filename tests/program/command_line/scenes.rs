@@ -163,7 +163,7 @@ fn the_price_of_an_effect_is_a_ratio_of_times() {
 fn accuracy_by_scene_is_relative_to_its_brightness() {
     let folder = in_memory();
     let scenes = "[\"cornell\", \"cornell-diffuse\", \"cornell-mirror\", \"forest\", \"wada\"]";
-    let more = "keep = [\"images\"]\n[figure.scene-accuracy.control]\nmatt = \"cornell-diffuse\"\nglass = \"cornell\"\nmirrors = \"cornell-mirror\"\n";
+    let more = "keep = [\"images\"]\n[figure.scene-accuracy.control]\ndiffuse = \"cornell-diffuse\"\nglass = \"cornell\"\nmirrors = \"cornell-mirror\"\n";
     let text = tiny(scenes, "scene-accuracy", more).replace("seed = [1]", "seed = [1, 2, 3]");
     let rmse = |scene: &str, seed: f64| match scene {
         "cornell" => 0.2 * seed,

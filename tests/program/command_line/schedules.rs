@@ -97,7 +97,7 @@ fn a_trace_is_replayed_on_other_machines() {
     assert_eq!(names, expected.map(|name| [name; 3]).concat());
     drawn(&folder.path().join("forecast/forecast-speedup.svg"), &expected[..3]);
 
-    let slower = ["simulate", "run.csv", "--no-check", "--workers", "2", "--slow-core", "0.5", "--noise", "0.02:0.5"];
+    let slower = ["simulate", "run.csv", "--no-check", "--workers", "2", "--slow-core", "0.5"];
     let said = run(folder.path(), &slower).out;
     assert!(!said.contains(PREDICTED), "{said}");
 }

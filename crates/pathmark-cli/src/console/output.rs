@@ -47,13 +47,27 @@ pub(crate) fn aligned(heads: Vec<String>, rows: impl IntoIterator<Item = Vec<Str
     lines.iter().map(aligned).collect::<Vec<_>>().join("\n")
 }
 
-/// Prints a value as one line of JSON. Absent values are `null`; NaN and infinities, for which JSON has no numbers, are
-/// the texts "NaN", "inf" and "-inf".
-pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {
-    let failed = |e: serde_json::Error| Error::system("writing", "standard output", e.into());
+fn failed(error: serde_json::Error) -> Error {
+    Error::system("writing", "standard output", error.into())
+}
+
+/// A value as [`print_json`] prints it, and whether it has texts instead of numbers.
+fn exact_json(value: &impl Serialize) -> Result<(Value, bool)> {
     let mut json = serde_json::to_value(value).map_err(failed)?;
     // TOML keeps NaN and infinities, which JSON turns into null.
     let named = toml::Value::try_from(value).is_ok_and(|exact| name_odd_numbers(&mut json, &exact));
+    Ok((json, named))
+}
+
+/// A value as a part of an object that [`print_json`] prints.
+pub(crate) fn json_of(value: &impl Serialize) -> Result<Value> {
+    Ok(exact_json(value)?.0)
+}
+
+/// Prints a value as one line of JSON. Absent values are `null`; NaN and infinities, for which JSON has no numbers, are
+/// the texts "NaN", "inf" and "-inf".
+pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {
+    let (json, named) = exact_json(value)?;
     // If nothing has to be replaced, fields keep their order.
     let line = if named { json.to_string() } else { serde_json::to_string(value).map_err(failed)? };
     // JSON itself escapes only the first 32 characters. All control characters that are left stand in texts.

@@ -5,7 +5,7 @@ use super::run::note_doubts;
 use crate::console::markdown;
 use crate::error::printable;
 use crate::experiment::{
-    Across, CellDiff, Change, Compared, CountDiff, CountDiffs, Diff, FailedCell, Lost, count_diff, diff, parse_share,
+    Across, CellDiff, Change, Compared, CountDiff, Diff, FailedCell, Lost, count_diff, diff, parse_share,
 };
 
 /// `pathmark diff before/thread-scaling after/thread-scaling --fail-above 3%`
@@ -68,7 +68,7 @@ pub(super) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let all = || found.experiments.iter().flat_map(|(_, diff)| &diff.cells);
     let count = |change: Change| all().filter(|cell| cell.change == change).count();
     if arguments.json {
-        print_json(&object(&found, limit, diff_object))?;
+        print_json(&object(&found, limit)?)?;
     } else {
         let shown = if arguments.markdown { in_markdown } else { table };
         print(&by_experiment(&found, shown).join("\n"))?;
@@ -95,10 +95,7 @@ fn counts(arguments: &Arguments, limit: f64, console: &Console) -> Result<()> {
     let found = count_diff(&arguments.old, &arguments.new)?;
     let all = || found.experiments.iter().flat_map(|(_, diffs)| &diffs.changed);
     if arguments.json {
-        print_json(&object(&found, limit, |diffs| {
-            let CountDiffs { changed, compared, lost } = diffs;
-            json!({ "compared": compared, "changed": changed, "missing": lost.missing, "failed": lost.failed })
-        }))?;
+        print_json(&object(&found, limit)?)?;
     } else {
         let shown = if arguments.markdown { counts_in_markdown } else { counts_in_lines };
         let lines = by_experiment(&found, |diffs| shown(&diffs.changed));
@@ -234,33 +231,20 @@ fn cells(found: &Diff) -> Vec<[String; 6]> {
     found.cells.iter().map(of).chain(missing).chain(failed).collect()
 }
 
-fn diff_object(found: &Diff) -> Value {
-    let cells = found.cells.iter().map(|cell| {
-        json!({
-            "cell": cell.cell, "change": cell.change, "ratio": number(cell.ratio), "interval": cell.interval,
-            "old_s": number(cell.old_s), "new_s": number(cell.new_s), "repetitions": cell.repetitions,
-        })
-    });
-    json!({
-        "paired": found.paired, "sequential": found.sequential, "doubted_rows": found.doubts.count(),
-        "unmatched": found.unmatched, "cells": cells.collect::<Vec<_>>(),
-        "missing": found.lost.missing, "failed": found.lost.failed,
-    })
-}
-
 /// The comparison of one experiment as one object; that of several with the name of each.
-fn object<T>(found: &Compared<T>, limit: f64, of: impl Fn(&T) -> Value) -> Value {
-    let with = |mut object: Value, key: &str, value: Value| {
+fn object<T: Serialize>(found: &Compared<T>, limit: f64) -> Result<Value> {
+    let with = |each: &T, key: &str, value: Value| {
+        let mut object = json_of(each)?;
         object[key] = value;
-        object
+        Ok::<Value, Error>(object)
     };
     match found.experiments.as_slice() {
-        [(name, only)] if name.is_empty() => with(of(only), "limit", json!(limit)),
+        [(name, only)] if name.is_empty() => with(only, "limit", json!(limit)),
         several => {
-            let named = several.iter().map(|(name, each)| with(of(each), "experiment", json!(name)));
+            let named = several.iter().map(|(name, each)| with(each, "experiment", json!(name)));
             let [only_old, only_new] = &found.alone;
-            let experiments: Vec<Value> = named.collect();
-            json!({ "limit": limit, "experiments": experiments, "only_old": only_old, "only_new": only_new })
+            let experiments = named.collect::<Result<Vec<Value>>>()?;
+            Ok(json!({ "limit": limit, "experiments": experiments, "only_old": only_old, "only_new": only_new }))
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Imports that verbs share: arguments, errors, files, and words to the user.
 
 pub(super) use crate::console::Console;
-pub(super) use crate::console::output::{number, print, print_json};
+pub(super) use crate::console::output::{json_of, number, print, print_json};
 pub(super) use crate::error::{Error, InputError, Result};
 pub(super) use crate::experiment::Progress;
 pub(super) use crate::files::{Files, create_folder};

@@ -4,7 +4,7 @@ use super::prelude::*;
 use super::run::note_doubts;
 use crate::console::markdown;
 use crate::error::printable;
-use crate::experiment::{ImageRanking, Place, Ranking, ranking};
+use crate::experiment::{ImageRanking, Place, ranking};
 use crate::report::latex::tabular;
 
 /// `pathmark rank out/thread-scaling --filter threads=2`
@@ -37,7 +37,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     }
     let found = ranking(lab, &arguments.folder, &arguments.filter)?;
     if arguments.json {
-        print_json(&object(&found))?;
+        print_json(&json_of(&found)?)?;
     } else if arguments.latex {
         let tables: String = found.images.iter().map(latex).collect();
         print(&format!("{tables}% {RULE}"))?;
@@ -126,22 +126,6 @@ fn fastest(image: &ImageRanking) -> String {
         (all, left) if left == all => format!("any of {of} may be the fastest"),
         _ => format!("with 95 % confidence, the fastest of {of} is among: {}", printable(&fastest.join(", "))),
     }
-}
-
-fn object(found: &Ranking) -> Value {
-    let image = |image: &ImageRanking| {
-        let place = |place: &Place| {
-            json!({
-                "schedule": place.schedule, "ratio": place.ratio.map(number), "interval": place.interval, "groups": place.groups,
-                "median_s": number(place.median_s), "repetitions": place.repetitions,
-            })
-        };
-        json!({ "image": image.image, "part": image.part, "fastest": image.fastest, "compared": image.compared, "places": image.places.iter().map(place).collect::<Vec<_>>() })
-    };
-    json!({
-        "images": found.images.iter().map(image).collect::<Vec<_>>(), "least_repetitions": found.least_repetitions,
-        "doubted_rows": found.doubts.count(), "without_time": found.without_time,
-    })
 }
 
 /// The letter of a group: a to z, then aa, ab and so on.

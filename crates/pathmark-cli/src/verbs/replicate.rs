@@ -10,6 +10,7 @@ use crate::console::output::lock_folder;
 use crate::experiment::{
     Options, REPLICATION, Replication, Reproduction, Statements, Sweep, Theirs, has_records, parse_share,
 };
+use crate::files::entries;
 use crate::lock::Sharing;
 use crate::measure::Machine;
 use crate::report::replication::{HEADS, cells, notices, rule, sentence, sorted};
@@ -184,15 +185,8 @@ fn folders(theirs: &Path, wanted: &[String]) -> Result<Vec<PathBuf>> {
     if has_records(theirs) && wanted.is_empty() {
         return Ok(vec![theirs.to_path_buf()]);
     }
-    let system = |e| Error::system("reading", theirs, e);
-    let mut found = Vec::new();
-    for entry in std::fs::read_dir(theirs).map_err(system)? {
-        let path = entry.map_err(system)?.path();
-        if has_records(&path) {
-            found.push(path);
-        }
-    }
-    found.sort();
+    let mut found = entries(theirs)?;
+    found.retain(|path| has_records(path));
     let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let names: Vec<String> = found.iter().map(name).collect();
     if names.is_empty() {

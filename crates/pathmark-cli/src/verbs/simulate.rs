@@ -11,7 +11,7 @@ use crate::measure::{
 use crate::report::forecasts::{self, Predicted};
 use crate::report::rank_forecasts::{self, RankPlan};
 use crate::report::{Block, LEVEL, Results};
-use crate::simulate::{Contender, Hardware, Messages, Noise, Observed, Speeds, contenders, forecast};
+use crate::simulate::{Contender, Hardware, Messages, Observed, contenders, forecast};
 
 /// `pathmark simulate run.csv --workers 1..4096`, after `pathmark render cornell --strategy serial --trace run.csv`
 #[derive(Args)]
@@ -31,9 +31,6 @@ pub(crate) struct Arguments {
     /// N fast cores; all others have the given speed
     #[arg(long, value_name = "N:SPEED")]
     efficiency_cores: Option<String>,
-    /// Share of the time that the system's interruptions take, and the length of one
-    #[arg(long, value_name = "SHARE[:MILLISECONDS]")]
-    noise: Option<String>,
     /// Forecast processes instead, which share jobs by these rules, as in `render --ranks`
     #[arg(long, value_name = "RULE", value_delimiter = ',', help_heading = "Processes")]
     ranks: Vec<String>,
@@ -67,7 +64,6 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
         console.note(&doubt);
     }
     let costs: Vec<Vec<f64>> = traces.iter().map(TraceFile::costs_s).collect();
-    check_noise(arguments, &hardware, costs[0].iter().sum())?;
     // A strategy that is named twice is one.
     let mut named: Vec<String> = Vec::new();
     for name in &arguments.strategies {
@@ -200,9 +196,6 @@ fn parse_workers(field: &'static str, text: &str) -> Result<Vec<usize>> {
 
 /// The slowest core: slower ones are unrealistic, and take long to replay.
 const SLOWEST: f64 = 0.01;
-/// The largest share of the time for interruptions, and the shortest length of one.
-const MOST_NOISE: f64 = 0.9;
-const SHORTEST_MS: f64 = 0.001;
 /// Simulations of more workers are unrealistic, and take long.
 const MOST_WORKERS: usize = 1 << 16;
 
@@ -213,19 +206,17 @@ fn hardware(arguments: &Arguments) -> Result<Hardware> {
             Error::from(error.allowed(format!("a speed from {SLOWEST} to 1, where 1 is a core like this one")))
         })
     };
-    let speeds = match (&arguments.slow_core, &arguments.efficiency_cores) {
-        (Some(slow), _) => Speeds::OneSlow(speed("slow-core", &slow.to_string(), Some(*slow))?),
+    Ok(match (&arguments.slow_core, &arguments.efficiency_cores) {
+        (Some(slow), _) => Hardware::OneSlow(speed("slow-core", &slow.to_string(), Some(*slow))?),
         (None, Some(text)) => {
             let (performance, efficient) = text.split_once(':').unwrap_or((text, ""));
             let unreadable =
                 || InputError::new("efficiency-cores", text, "cannot be read").allowed("N:SPEED, as in 8:0.5");
             let performance = performance.parse().map_err(|_| unreadable())?;
-            Speeds::Mixed { performance, efficient: speed("efficiency-cores", text, efficient.parse().ok())? }
+            Hardware::Mixed { performance, efficient: speed("efficiency-cores", text, efficient.parse().ok())? }
         }
-        (None, None) => Speeds::Identical,
-    };
-    let noise = arguments.noise.as_deref().map(parse_noise).transpose()?;
-    Ok(Hardware { speeds, noise })
+        (None, None) => Hardware::Identical,
+    })
 }
 
 /// The differences from cores that are all like this one.
@@ -233,43 +224,8 @@ fn hardware_in_words(arguments: &Arguments) -> String {
     let parts = [
         arguments.slow_core.map(|speed| format!(", one core of speed {speed}")),
         arguments.efficiency_cores.as_ref().map(|cores| format!(", fast cores and the others' speed {cores}")),
-        arguments.noise.as_ref().map(|noise| format!(", interruptions {noise}")),
     ];
     parts.into_iter().flatten().collect()
-}
-
-fn parse_noise(text: &str) -> Result<Noise> {
-    let (share, length) = text.split_once(':').unwrap_or((text, "0.1"));
-    let noise = share.parse().ok().zip(length.parse::<f64>().ok());
-    let sensible = |&(share, milliseconds): &(f64, f64)| share <= MOST_NOISE && milliseconds >= SHORTEST_MS;
-    let noise = noise.filter(sensible).and_then(|(share, milliseconds)| Noise::new(share, milliseconds * 1e-3, 1));
-    noise.ok_or_else(|| {
-        InputError::new("noise", text, "is not a valid share and length")
-            .allowed(format!(
-                "SHARE[:MILLISECONDS], at most {MOST_NOISE} and at least {SHORTEST_MS} ms, as in 0.02:0.5"
-            ))
-            .into()
-    })
-}
-
-/// The most interruptions in one replay. Each is drawn: with so many, replaying all strategies and numbers of workers
-/// takes some seconds.
-const MOST_INTERRUPTIONS: f64 = 1e6;
-
-/// Refuses noise that would take too long to draw.
-fn check_noise(arguments: &Arguments, hardware: &Hardware, work_s: f64) -> Result<()> {
-    let slowest = match hardware.speeds {
-        Speeds::Identical => 1.0,
-        Speeds::OneSlow(speed) | Speeds::Mixed { efficient: speed, .. } => speed,
-    };
-    let (Some(text), Some(noise)) = (&arguments.noise, hardware.noise) else { return Ok(()) };
-    let interruptions = noise.interruptions(work_s / slowest);
-    if interruptions <= MOST_INTERRUPTIONS {
-        return Ok(());
-    }
-    let problem = format!("would interrupt the {work_s:.3} s of the trace {interruptions:.0} times");
-    let error = InputError::new("noise", text, problem);
-    Err(error.allowed(format!("longer or fewer interruptions, at most {MOST_INTERRUPTIONS:.0} of them")).into())
 }
 
 /// Estimated seconds of all rounds of predictions; there are at least one and at most five.
@@ -367,11 +323,5 @@ mod tests {
         for wrong in ["", "0", "4..2", "1..", "x", "1,,2", "1..99999999"] {
             assert!(parse_workers("workers", wrong).is_err(), "{wrong}");
         }
-    }
-
-    #[test]
-    fn noise_is_a_share_and_a_length() {
-        assert!(parse_noise("0.02").is_ok() && parse_noise("0.02:0.5").is_ok());
-        assert!(["", "1", "-0.1", "0.1:0", "x:1"].iter().all(|wrong| parse_noise(wrong).is_err()));
     }
 }

@@ -40,10 +40,11 @@ impl CountDiff {
     }
 }
 
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct CountDiffs {
     pub changed: Vec<CountDiff>,
     pub compared: usize,
+    #[serde(flatten)]
     pub lost: Lost,
 }
 

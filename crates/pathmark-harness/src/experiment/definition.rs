@@ -45,7 +45,6 @@ pub(super) const REFERENCE_SPP: &str = "reference-spp";
 /// Other names in a folder of results, which no experiment may have.
 const TAKEN: &[&str] = &[
     "CLAIMS.md",
-    "benches",
     "bursts",
     "check",
     "claims",

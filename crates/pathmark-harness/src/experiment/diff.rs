@@ -148,9 +148,10 @@ impl Judge {
     }
 }
 
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Diff {
     pub cells: Vec<CellDiff>,
+    #[serde(flatten)]
     pub lost: Lost,
     /// Numbers of cells with times that have none in the other measurement: of the old and of the new one.
     pub unmatched: [usize; 2],
@@ -158,7 +159,9 @@ pub struct Diff {
     /// Whether repetitions had a goal, and the intervals allow for that.
     pub sequential: bool,
     /// Whether repetitions had a goal, and the intervals do not allow for that.
+    #[serde(skip)]
     pub stopped_by_times: bool,
+    #[serde(rename = "doubted_rows")]
     pub doubts: TimingConcerns,
 }
 

@@ -15,6 +15,7 @@ use crate::atomic_file;
 use crate::csv_file;
 use crate::digest;
 use crate::error::{Error, InputError, Result};
+use crate::files::entries;
 use crate::measure::{Record, joined_calibrations, read_calibration};
 use std::collections::BTreeMap;
 use std::fs;
@@ -72,13 +73,14 @@ fn refused(field: &str, path: &Path, problem: impl Into<String>) -> InputError {
 
 /// The parts in a folder that `run --out` made, each with its experiment's name.
 fn parts_in(folder: &Path) -> Result<Vec<(String, Part)>> {
-    let entries = fs::read_dir(folder).map_err(|e| match e.kind() {
-        ErrorKind::NotFound => refused("part", folder, "there is no such folder").into(),
-        _ => Error::system("reading", folder, e),
+    let found = entries(folder).map_err(|error| match &error {
+        Error::System { source, .. } if source.kind() == ErrorKind::NotFound => {
+            refused("part", folder, "there is no such folder").into()
+        }
+        _ => error,
     })?;
     let mut parts = Vec::new();
-    for entry in entries {
-        let path = entry.map_err(|e| Error::system("reading", folder, e))?.path();
+    for path in found {
         if !path.join(MACHINE).is_file() || !has_records(&path) {
             continue;
         }

@@ -62,13 +62,14 @@ pub struct ImageRanking {
     pub compared: usize,
 }
 
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Ranking {
     pub images: Vec<ImageRanking>,
     /// The cells that have no time, because their rows failed.
     pub without_time: Vec<String>,
     /// The fewest repetitions that can tell any two schedules apart.
     pub least_repetitions: u32,
+    #[serde(rename = "doubted_rows")]
     pub doubts: TimingConcerns,
 }
 

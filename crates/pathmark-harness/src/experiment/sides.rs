@@ -5,6 +5,7 @@ use super::packed_rows::{has_records, records_path};
 use super::records_file::read_records;
 use super::run_file::{MACHINE, RunFile, read_run_file};
 use crate::error::{Error, InputError, Result};
+use crate::files::entries;
 use crate::measure::Record;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashSet};
@@ -135,10 +136,8 @@ fn experiments_in(field: &str, path: &Path) -> Result<Option<BTreeMap<String, Pa
     if !path.is_dir() || has_records(path) {
         return Ok(None);
     }
-    let system = |e| Error::system("reading", path, e);
     let mut found = BTreeMap::new();
-    for entry in fs::read_dir(path).map_err(system)? {
-        let folder = entry.map_err(system)?.path();
+    for folder in entries(path)? {
         if let Some(name) = folder.file_name().filter(|_| has_records(&folder)) {
             found.insert(name.to_string_lossy().into_owned(), folder);
         }

@@ -1,17 +1,25 @@
 //! Doubtful times: the number of rows that have them, and the reasons.
 
+use serde::Serialize;
 use std::fmt;
 
 /// The warnings about the time of a run; the others concern its image.
 const REASONS: [&str; 5] = ["foreign-load", "steal", "slowed", "drift", "too-short"];
 
-/// The number of rows, and of those whose times are in doubt.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+/// The number of rows, and of those whose times are in doubt; in JSON only the latter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(into = "usize")]
 pub struct TimingConcerns {
     rows: usize,
     doubted: usize,
     /// Number of rows with each reason; a row may have several.
     by_reason: [usize; REASONS.len()],
+}
+
+impl From<TimingConcerns> for usize {
+    fn from(concerns: TimingConcerns) -> Self {
+        concerns.doubted
+    }
 }
 
 impl TimingConcerns {

@@ -92,6 +92,12 @@ impl ImageKey {
         Self { seed: 0, ..self.clone() }
     }
 
+    /// Clears the scene and the choices that fit it.
+    pub fn forget_scene(&mut self) {
+        [&mut self.scene, &mut self.scene_hash, &mut self.roulette].into_iter().for_each(String::clear);
+        self.max_depth = None;
+    }
+
     /// Whether a setting changes what the image converges to.
     pub(crate) fn is_biased(&self) -> bool {
         self.max_depth.is_some() || [&self.clamp, &self.filter, &self.epsilon].iter().any(|part| !part.is_empty())

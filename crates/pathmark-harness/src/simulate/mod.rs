@@ -31,7 +31,7 @@ mod replay;
 
 pub use contender::{Contender, Order, contenders};
 pub use forecast::{Bounds, Forecast, bounds, forecast, longest_first, typical_costs};
-pub use hardware::{Hardware, Noise, Speeds};
+pub use hardware::Hardware;
 pub use inflation::{BusyRatio, WorkInflation};
 pub use overhead::{Overhead, Overheads};
 pub use prediction::{DISTURBED, Observed, Prediction, RelativeErrors, busy_ratios, predict, relative_errors};

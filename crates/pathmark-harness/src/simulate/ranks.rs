@@ -6,7 +6,7 @@
 //! processes ([`Messages`]). Waiting takes no processor here, so each thread of each rank must have one.
 
 use super::contender::Contender;
-use super::hardware::{Hardware, Speeds};
+use super::hardware::Hardware;
 use crate::lab::{Distribution, LOOK, Master, is_small};
 use crate::strategy::{ChunkRule, LearnedRule, Ledger, Seen};
 use serde::Serialize;
@@ -69,8 +69,8 @@ impl Cluster<'_> {
 
     /// The seconds that a rank takes for jobs of these costs, and the job durations that it observes.
     fn chunk(&self, rank: usize, costs: &[f64]) -> (f64, Seen) {
-        let (speed, hardware) = match self.hardware.speeds {
-            Speeds::OneSlow(_) => (self.hardware.speed(rank), Hardware { speeds: Speeds::Identical, ..self.hardware }),
+        let (speed, hardware) = match self.hardware {
+            Hardware::OneSlow(_) => (self.hardware.speed(rank), Hardware::Identical),
             _ => (1.0, self.hardware),
         };
         if costs.is_empty() {
@@ -258,7 +258,7 @@ mod tests {
     fn a_slow_rank_gets_less_where_it_asks() {
         let costs = [1.0; 300];
         let strategy = within("serial");
-        let hardware = Hardware { speeds: Speeds::OneSlow(0.5), ..Hardware::default() };
+        let hardware = Hardware::OneSlow(0.5);
         let crew = Crew { ranks: 2, threads: 1 };
         let cluster = Cluster { crew, within: &strategy, messages: Messages::default(), hardware };
         let at = |rule: &str| cluster.makespan_s(&costs, Lab::new().rank_rule("ranks", rule).unwrap().distribution());

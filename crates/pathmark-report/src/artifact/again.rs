@@ -1,6 +1,6 @@
 //! How the rows of a claim are measured again, and the estimated costs.
 
-use crate::claims::{Answer, Needs, PlainRows};
+use crate::claims::{Answer, Needs};
 use crate::error::{Error, Result};
 use crate::experiment::{Plan, Prices, Theirs};
 use crate::lab::Lab;
@@ -8,30 +8,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// How the rows of a claim are measured.
-pub(super) enum Again<'a> {
-    /// As the experiment of this folder, a path in the archive.
-    Experiment(PathBuf),
-    HardCases,
-    /// By another program.
-    Table(&'a PlainRows),
-    /// Not by this program, and why.
-    Not(String),
-}
-
-impl<'a> Again<'a> {
-    /// How the rows of an answer are measured, whose sources are paths in the archive.
-    pub(super) fn of(answer: &Answer<'a>) -> Self {
-        match answer.report.needs(answer.claim) {
-            Needs::Experiment(name) => match answer.sources.first().and_then(|source| source.parent()) {
-                Some(folder) => Self::Experiment(folder.to_path_buf()),
-                None => Self::Not(format!("there are no rows of {name}")),
-            },
-            Needs::HardCases => Self::HardCases,
-            Needs::Table(table) => Self::Table(table),
-            Needs::Nothing(why) => Self::Not(why),
-        }
-    }
+/// The folder of the experiment whose rows answer a claim. The sources of the answer are paths in the archive.
+pub(super) fn folder_of<'a>(answer: &'a Answer<'_>) -> Option<&'a Path> {
+    let is_measured = matches!(answer.report.needs(answer.claim), Needs::Experiment(_));
+    answer.sources.first().filter(|_| is_measured)?.parent()
 }
 
 /// The costs of an experiment on this machine, with its scenes.
@@ -49,16 +29,16 @@ pub(super) fn costs(lab: &Arc<Lab>, archive: &Path, answers: &[Answer<'_>]) -> R
     let mut prices = Prices::new(lab);
     let mut costs = Costs::new();
     for answer in answers {
-        let Again::Experiment(folder) = Again::of(answer) else { continue };
-        if costs.contains_key(&folder) {
+        let Some(folder) = folder_of(answer) else { continue };
+        if costs.contains_key(folder) {
             continue;
         }
-        let cost = match cost(lab, &archive.join(&folder), &mut prices) {
+        let cost = match cost(lab, &archive.join(folder), &mut prices) {
             Ok(cost) => Ok(cost),
             Err(Error::Input(error)) => Err(error.to_string()),
             Err(other) => return Err(other),
         };
-        costs.insert(folder, cost);
+        costs.insert(folder.to_path_buf(), cost);
     }
     Ok(costs)
 }

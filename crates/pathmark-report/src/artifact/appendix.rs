@@ -1,11 +1,11 @@
 //! `README.md` of an artifact, in the form of the appendix that ACM and cTuning ask for.
 
-use super::again::{Again, Costs};
+use super::again::{Costs, folder_of};
 use super::citation::Citation;
 use super::metadata::METADATA;
 use super::recipes::{Program, installing};
 use super::{CLAIMS, CONTAINER, FIRST, LEDGER, MEASURE, ROWS, VERDICTS};
-use crate::claims::{Answer, PlainRows, totals};
+use crate::claims::{Answer, Needs, PlainRows, totals};
 use crate::experiment::RunFile;
 use crate::measure::Machine;
 use crate::words::{bytes, counted, seconds};
@@ -52,8 +52,8 @@ const METRICS: &str = "ratios, orders and slopes with intervals; seconds are not
 
 /// The tables of other programs that answer claims, by the paths of their rows.
 pub(super) fn tables<'a>(answers: &[Answer<'a>]) -> BTreeMap<PathBuf, &'a PlainRows> {
-    let of = |answer: &Answer<'a>| match Again::of(answer) {
-        Again::Table(table) => answer.sources.iter().map(|source| (source.clone(), table)).collect(),
+    let of = |answer: &Answer<'a>| match answer.report.needs(answer.claim) {
+        Needs::Table(table) => answer.sources.iter().map(|source| (source.clone(), table)).collect(),
         _ => Vec::new(),
     };
     answers.iter().flat_map(of).collect()
@@ -261,9 +261,9 @@ impl Appendix<'_> {
 
     fn claim(&self, answer: &Answer<'_>) -> String {
         let claim = answer.claim;
-        let again = match Again::of(answer) {
-            Again::Experiment(folder) => {
-                let cost = match self.costs.get(&folder) {
+        let again = match (answer.report.needs(answer.claim), folder_of(answer)) {
+            (_, Some(folder)) => {
+                let cost = match self.costs.get(folder) {
                     Some(Ok(cost)) => {
                         let (seconds, bytes) = (seconds(cost.plan.seconds()), bytes(cost.plan.bytes));
                         format!("; {seconds} and {bytes} for the experiment")
@@ -271,11 +271,12 @@ impl Appendix<'_> {
                     Some(Err(why)) => format!("; costs are unknown: {why}"),
                     None => String::new(),
                 };
-                format!("`{}`{cost}", self.program.measuring(&folder, "../again"))
+                format!("`{}`{cost}", self.program.measuring(folder, "../again"))
             }
-            Again::HardCases => format!("`{} selftest --out ../again`", self.program.command),
-            Again::Table(table) => of_table(table),
-            Again::Not(why) => why,
+            (Needs::Experiment(name), None) => format!("there are no rows of {name}"),
+            (Needs::HardCases, _) => format!("`{} selftest --out ../again`", self.program.command),
+            (Needs::Table(table), _) => of_table(table),
+            (Needs::Nothing(why), _) => why,
         };
         let predicted = Some(answer.predicted()).filter(|predicted| predicted != "-");
         let predicted = predicted.map_or_else(String::new, |predicted| format!("; predicted: {predicted}"));

@@ -5,6 +5,7 @@ use super::citation::{Author, Citation};
 use super::recipes::Program;
 use crate::error::{Error, InputError, Result};
 use crate::input::read_text_up_to;
+use crate::page::href;
 use crate::time::is_date;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -75,7 +76,7 @@ pub(super) fn text(files: &[Listed], citation: &Citation, about: &str, date: &st
     let ids = |entities: &[Value]| entities.iter().map(id_of).collect::<Vec<Value>>();
     let file = |file: &Listed| {
         json!({
-            "@id": encoded(&file.path),
+            "@id": href(&file.path),
             "@type": "File",
             "name": file.path,
             "encodingFormat": encoding(&file.path),
@@ -110,13 +111,6 @@ pub(super) fn text(files: &[Listed], citation: &Citation, about: &str, date: &st
     // The context of RO-Crate 1.1 has no word for checksums.
     let context = json!(["https://w3id.org/ro/crate/1.1/context", { "sha256": "http://schema.org/sha256" }]);
     format!("{:#}\n", json!({ "@context": context, "@graph": graph }))
-}
-
-/// A path as an identifier, which is a reference of a URI.
-fn encoded(path: &str) -> String {
-    let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._~/".contains(&byte);
-    let encode = |byte: u8| if is_plain(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") };
-    path.bytes().map(encode).collect()
 }
 
 /// The path of an identifier; `None` if it is none.
@@ -351,7 +345,7 @@ mod tests {
     #[test]
     fn identifiers_are_paths() {
         for path in ["rows/a b/r%ecords.csv", "é/ü.toml", "plain-1_2.~x"] {
-            let id = encoded(path);
+            let id = href(path);
             assert!(id.is_ascii() && !id.contains(' '), "{id}");
             assert_eq!(decoded(&id).as_deref(), Some(path));
         }

@@ -32,7 +32,7 @@ use crate::lab::Lab;
 use crate::measure::{Machine, utc_now};
 use crate::results::Results;
 use crate::{PAGE, page};
-use again::{Again, Cost, costs};
+use again::{Cost, costs, folder_of};
 use appendix::{Appendix, Experiment};
 use metadata::{METADATA, files_below, look_at};
 use recipes::Program;
@@ -226,8 +226,7 @@ fn first_of<'a, 'b>(answers: &'b [Answer<'a>]) -> Result<&'b Answer<'a>> {
     let is_judged =
         |answer: &Answer<'_>| matches!(answer.verdict, Verdict::Confirmed | Verdict::Refuted | Verdict::Open);
     let with_rows = answers.iter().filter(|answer| !answer.sources.is_empty());
-    let can_measure = |answer: &Answer<'_>| matches!(Again::of(answer), Again::Experiment(_));
-    let first = with_rows.min_by_key(|answer| (!is_judged(answer), !can_measure(answer)));
+    let first = with_rows.min_by_key(|answer| (!is_judged(answer), folder_of(answer).is_none()));
     first.ok_or_else(|| InputError::new("ledger", "", "has no claim that the rows of these folders answer").into())
 }
 

@@ -1,6 +1,6 @@
 //! The scripts of an artifact, and the recipe of its container.
 
-use super::again::Again;
+use super::again::folder_of;
 use super::{FIRST, LEDGER, MEASURE};
 use crate::claims::Answer;
 use crate::lab::Lab;
@@ -64,14 +64,14 @@ impl Program {
 
     /// The script that measures the rows of a claim again, if this program can.
     pub(super) fn measure(&self, answer: &Answer<'_>) -> Option<String> {
-        let Again::Experiment(folder) = Again::of(answer) else { return None };
+        let folder = folder_of(answer)?;
         Some(format!(
             "#!/bin/sh\n# Measures the rows of claim {} again and judges the claim by them. The argument is a folder for the new rows,\n\
              # from the folder of this script.\nset -eu\ncd \"$(dirname \"$0\")\"\nout=${{1:-../again}}\n\
              # Code 1 says that a statement is not reproduced, or that none could be judged; REPLICATION.md has them.\n{} || [ $? -eq 1 ]\n\
              {} \"$out\" {}\n",
             answer.claim.id,
-            self.measuring(&folder, "\"$out\""),
+            self.measuring(folder, "\"$out\""),
             self.called(["claims"]),
             ["--ledger", LEDGER, "--report", &answer.report.report].map(shell::quoted).join(" "),
         ))

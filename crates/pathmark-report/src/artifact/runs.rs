@@ -1,8 +1,9 @@
 //! The folders of rows that an artifact takes, and their files in it.
 
 use crate::claims::Answer;
-use crate::error::{Error, InputError, Result};
+use crate::error::{InputError, Result};
 use crate::experiment::{DOCTOR, MACHINE, has_records, records_path};
+use crate::files::entries;
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 
@@ -66,15 +67,8 @@ pub(super) fn plain(path: &Path) -> Option<PathBuf> {
 
 /// The folders in a folder, sorted.
 pub(super) fn folders_in(folder: &Path) -> Result<Vec<PathBuf>> {
-    let system = |e| Error::system("reading", folder, e);
-    let mut found = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(system)? {
-        let path = entry.map_err(system)?.path();
-        if path.is_dir() {
-            found.push(path);
-        }
-    }
-    found.sort();
+    let mut found = entries(folder)?;
+    found.retain(|path| path.is_dir());
     Ok(found)
 }
 

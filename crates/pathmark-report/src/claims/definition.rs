@@ -41,6 +41,7 @@ use super::statistic::{OF_PLAIN_ROWS, Statistic, fields_of, is_field_of_any};
 use super::verdict::{NAMES, Verdict};
 use crate::error::{Error, InputError, Result};
 use crate::experiment;
+use crate::files::entries;
 use crate::input::{parse, read_text};
 use crate::lab::Lab;
 use crate::time::{FORM, is_time};
@@ -489,15 +490,8 @@ fn check_columns(statistic: &Statistic, comparable_if: &Conditions, tables: &[Pl
 
 /// The ledgers of a folder, by name.
 fn ledgers_in(folder: &Path) -> Result<Vec<PathBuf>> {
-    let system = |e| Error::system("reading", folder, e);
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(system)? {
-        let path = entry.map_err(system)?.path();
-        if path.extension().is_some_and(|ending| ending == "toml") {
-            files.push(path);
-        }
-    }
-    files.sort();
+    let mut files = entries(folder)?;
+    files.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
     Ok(files)
 }
 

@@ -9,14 +9,14 @@ use crate::atomic_file;
 use crate::block::Block;
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
-use crate::page::href;
+use crate::page::{href, way};
 use crate::plot::number;
 use crate::prelude::{counted, joined};
 use crate::table::Table;
 use crate::words::capital;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 /// Name of the verdicts' folder within the results.
 pub const FOLDER: &str = "claims";
@@ -27,8 +27,6 @@ const HEADING: &str = "# The claims of the four reports";
 /// The first sentences below the heading, of verdicts and of numbers: with the heading they tell the program's own texts.
 const OF_VERDICTS: &str = "`pathmark claims` computed every verdict from the rows that it links to.";
 const OF_NUMBERS: &str = "`pathmark claims` computed every number from the rows that it links to.";
-/// The beginning of the line above the claims of a report.
-const REPORT: &str = "## Report ";
 /// The beginning of a table of verdicts.
 const COLUMNS: &str = "claim,report,verdict,expected,says,";
 
@@ -159,13 +157,12 @@ impl Listing {
         let [table, text] = [self.csv(out), self.markdown(out)];
         files.renews(option, &table, |path| text_of(path).starts_with(COLUMNS))?;
         files.renews(option, &text, |path| is_listing(path, &self.heading))?;
-        let is_own = |name: &String| reports.iter().any(|report| report.report == *name);
-        for (path, names) in [(&table, reports_in_table(&table)), (&text, reports_in_text(&text, reports))] {
-            if let Some(other) = names.into_iter().find(|name| !is_own(name)) {
-                let problem = format!("has verdicts on the report {other}, which this ledger does not have");
-                let error = InputError::new(option, path.display().to_string(), problem);
-                return Err(error.allowed("another folder, or another name of the ledger").into());
-            }
+        let is_other = |name: &String| reports.iter().all(|report| report.report != *name);
+        let names = rows_of(&table).filter_map(|row| row.get(1).map(str::to_string));
+        if let Some(other) = names.filter(is_other).min() {
+            let problem = format!("has verdicts on the report {other}, which this ledger does not have");
+            let error = InputError::new(option, table.display().to_string(), problem);
+            return Err(error.allowed("another folder, or another name of the ledger").into());
         }
         Ok(())
     }
@@ -183,65 +180,27 @@ impl Listing {
 
     /// Refuses to write verdicts into a folder whose files answer claims that these leave open to another run.
     pub fn check_no_loss(&self, option: &str, answers: &[Answer<'_>], out: &Path) -> Result<()> {
-        for (path, read) in [(self.csv(out), in_table as fn(&Path) -> Kept), (self.markdown(out), in_text)] {
-            let kept = read(&path);
-            // A claim that asks for no rows any more loses none.
-            let is_lost = |answer: &&Answer<'_>| {
-                let says_more = kept.get(&answer.claim.id).is_some_and(|kept| kept.says() > answer.verdict.says());
-                says_more && answer.claim.test().is_ok()
-            };
-            let lost: Vec<String> = answers.iter().filter(is_lost).map(|answer| answer.claim.id.to_string()).collect();
-            if !lost.is_empty() {
-                let problem = format!("answers claims that these rows do not answer: {}", lost.join(", "));
-                let error = InputError::new(option, path.display().to_string(), problem);
-                return Err(error.allowed("another folder, or more folders of rows").into());
-            }
+        let path = self.csv(out);
+        let verdict = |row: csv::StringRecord| Some((row.get(0)?.parse().ok()?, Verdict::named(row.get(2)?)?));
+        let kept: BTreeMap<u32, Verdict> = rows_of(&path).filter_map(verdict).collect();
+        // A claim that asks for no rows any more loses none.
+        let is_lost = |answer: &&Answer<'_>| {
+            let says_more = kept.get(&answer.claim.id).is_some_and(|kept| kept.says() > answer.verdict.says());
+            says_more && answer.claim.test().is_ok()
+        };
+        let lost: Vec<String> = answers.iter().filter(is_lost).map(|answer| answer.claim.id.to_string()).collect();
+        if !lost.is_empty() {
+            let problem = format!("answers claims that these rows do not answer: {}", lost.join(", "));
+            let error = InputError::new(option, path.display().to_string(), problem);
+            return Err(error.allowed("another folder, or more folders of rows").into());
         }
         Ok(())
     }
 }
 
-/// The verdict on each claim.
-type Kept = BTreeMap<u32, Verdict>;
-
-/// The verdicts in a table; none if there is no such file.
-fn in_table(path: &Path) -> Kept {
-    let Ok(reader) = csv::Reader::from_path(path) else { return Kept::new() };
-    let rows = reader.into_records().filter_map(std::result::Result::ok);
-    rows.filter_map(|row| verdict(row.get(0)?, row.get(2)?)).collect()
-}
-
-/// The verdicts in a text; none if there is no such file.
-fn in_text(path: &Path) -> Kept {
-    let text = text_of(path);
-    let entries = text.split("\n### ").skip(1);
-    let of_entry = |entry: &str| {
-        let (id, rest) = entry.split_once(". ")?;
-        let (_, rest) = rest.split_once("\n\n**")?;
-        verdict(id, &rest.split_once("**")?.0.to_lowercase().replace(' ', "-"))
-    };
-    entries.filter_map(of_entry).collect()
-}
-
-/// The names of the reports in a table; none if there is no such file.
-fn reports_in_table(path: &Path) -> BTreeSet<String> {
-    let Ok(reader) = csv::Reader::from_path(path) else { return BTreeSet::new() };
-    let rows = reader.into_records().filter_map(std::result::Result::ok);
-    rows.filter_map(|row| row.get(1).map(str::to_string)).collect()
-}
-
-/// The names of the reports in a text, as far as they are not those of `own`; none if there is no such file.
-fn reports_in_text(path: &Path, own: &[Report]) -> BTreeSet<String> {
-    let heads: Vec<String> = own.iter().map(|report| format!("{}: ", report.report)).collect();
-    let text = text_of(path);
-    let named = text.lines().filter_map(|line| line.strip_prefix(REPORT));
-    let others = named.filter(|named| !heads.iter().any(|head| named.starts_with(head)));
-    others.filter_map(|named| Some(named.split_once(": ")?.0.to_string())).collect()
-}
-
-/// A claim's number with its verdict, if both can be read.
-fn verdict(id: &str, name: &str) -> Option<(u32, Verdict)> {
-    Some((id.parse().ok()?, Verdict::named(name)?))
+/// The rows of a table of verdicts; none if there is no such file.
+fn rows_of(path: &Path) -> impl Iterator<Item = csv::StringRecord> {
+    csv::Reader::from_path(path).into_iter().flat_map(csv::Reader::into_records).filter_map(std::result::Result::ok)
 }
 
 fn table(stem: &'static str, answers: &[Answer<'_>]) -> Block {
@@ -317,10 +276,8 @@ fn counts(answers: &[Answer<'_>]) -> Vec<(String, Vec<usize>)> {
 
 /// The path of a file as seen from a folder; the path itself if either is not there.
 fn seen_from(folder: &Path, file: &Path) -> PathBuf {
-    let Some((from, to)) = folder.canonicalize().ok().zip(file.canonicalize().ok()) else { return file.to_path_buf() };
-    let shared = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
-    let up = from.components().skip(shared).map(|_| Component::ParentDir);
-    up.chain(to.components().skip(shared)).collect()
+    let complete = folder.canonicalize().ok().zip(file.canonicalize().ok());
+    complete.map_or_else(|| file.to_path_buf(), |(from, to)| way(&from, &to))
 }
 
 /// The verdicts as a text; paths of sources are relative to `base`. Findings are a table.
@@ -349,7 +306,7 @@ fn markdown(heading: &str, answers: &[Answer<'_>], base: &Path) -> String {
     for answer in ordered {
         if last.is_none_or(|last| last.report != answer.report.report) {
             let Report { report, title, about, source, doi, .. } = answer.report;
-            let _ = write!(text, "\n{REPORT}{report}: {title}\n\n{}\n", about.trim());
+            let _ = write!(text, "\n## Report {report}: {title}\n\n{}\n", about.trim());
             let doi = Some(doi).filter(|doi| !doi.is_empty()).map(|doi| format!("<https://doi.org/{doi}>"));
             let cited = joined([source.clone(), doi.unwrap_or_default()]);
             if !cited.is_empty() {

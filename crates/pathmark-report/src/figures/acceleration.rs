@@ -4,6 +4,9 @@ use crate::prelude::*;
 use crate::scene::ACCELERATORS;
 use crate::words::with_interval;
 
+/// The accelerator that the others are compared with.
+const YARDSTICK: &str = "none";
+
 /// Rows by a number (of primitives or samples), then by accelerator.
 type Places<'a> = BTreeMap<u64, BTreeMap<&'a str, Vec<&'a Row>>>;
 
@@ -11,7 +14,6 @@ type Places<'a> = BTreeMap<u64, BTreeMap<&'a str, Vec<&'a Row>>>;
 type Gains = Vec<(u64, Ratio)>;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let yardstick = yardstick(results, "acceleration", "none")?;
     let names = results.by(|row| row.accelerator.as_str()).into_keys();
     let accelerators = in_table_order(names, ACCELERATORS.iter().map(|entry| entry.name));
     let (generated, others): (Vec<&Row>, Vec<&Row>) = results.rows().partition(|row| primitives(row).is_some());
@@ -25,17 +27,17 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let of_one_image = images.rev().max_by_key(spp_of).unwrap_or_default();
     let samples = places(of_one_image, |row| u64::from(row.spp));
     let mut blocks = Vec::new();
-    let of_sizes = gains(&sizes, &yardstick, results.stopping())?;
+    let of_sizes = gains(&sizes, results.stopping())?;
     blocks.extend(against_primitives(results, &sizes, &accelerators, fastest(&of_sizes)));
     blocks.extend(crossover(&of_sizes));
-    let of_samples = gains(&samples, &yardstick, results.stopping())?;
+    let of_samples = gains(&samples, results.stopping())?;
     blocks.extend(against_spp(results, &samples, &accelerators, &of_samples));
-    let further = further(&others, &accelerators, &yardstick, results.stopping())?;
-    blocks.extend(marginal(&further, &yardstick));
+    let further = further(&others, &accelerators, results.stopping())?;
+    blocks.extend(marginal(&further));
     let spheres = listed(&of_sizes, |count| format!("{count} spheres"));
     let image = image(&samples);
     let of_spp = listed(&of_samples, |spp| joined([image.clone(), format!("{spp} spp")]));
-    blocks.extend(gain_table(spheres.into_iter().chain(of_spp).chain(further).collect(), &yardstick));
+    blocks.extend(gain_table(spheres.into_iter().chain(of_spp).chain(further).collect()));
     blocks.push(table(results, &accelerators));
     Ok(blocks)
 }
@@ -95,11 +97,11 @@ fn against_primitives(
 }
 
 /// The gains of each accelerator other than the yardstick.
-fn gains<'a>(places: &Places<'a>, yardstick: &str, stopping: Stopping) -> Result<BTreeMap<&'a str, Gains>> {
+fn gains<'a>(places: &Places<'a>, stopping: Stopping) -> Result<BTreeMap<&'a str, Gains>> {
     let mut cells = Vec::new();
     for (place, rows) in places {
-        for (name, own) in rows.iter().filter(|(name, _)| **name != yardstick) {
-            let base = rows.get(yardstick).into_iter().flatten().copied();
+        for (name, own) in rows.iter().filter(|(name, _)| **name != YARDSTICK) {
+            let base = rows.get(YARDSTICK).into_iter().flatten().copied();
             let gains = ratios(base, own.iter().copied(), any_accelerator, |row| row.makespan_s)?;
             cells.push(((*name, *place), gains));
         }
@@ -232,23 +234,23 @@ fn listed(gains: &BTreeMap<&str, Gains>, workload: impl Fn(u64) -> String) -> Ve
     all.into_iter().map(gain).collect()
 }
 
-fn gain_table(gains: Vec<Gain>, yardstick: &str) -> Option<Block> {
+fn gain_table(gains: Vec<Gain>) -> Option<Block> {
     if gains.is_empty() {
         return None;
     }
     let partial = |told: &Estimated| if told.is_partial { "fewer repetitions than others: not comparable" } else { "" };
-    let title = format!("How many times as long {yardstick} takes");
+    let title = format!("How many times as long {YARDSTICK} takes");
     let table = Block::table("acceleration-gains", title, gains)
         .column("workload", |gain| gain.workload.clone())
         .column("accelerator", |gain| gain.accelerator.clone())
-        .estimated(format!("time with {yardstick} / time"), Decimals(2), |gain| gain.told)
+        .estimated(format!("time with {YARDSTICK} / time"), Decimals(2), |gain| gain.told)
         .column("remark", |gain| partial(&gain.told).to_string());
     Some(table.end())
 }
 
 /// How many times as long the yardstick takes for each further sample, the largest image last. A difference of two times
 /// contains no fixed cost, so a fixed cost cannot bend this factor as it bends the gain at few samples.
-fn further(rows: &[&Row], accelerators: &[(usize, &str)], yardstick: &str, stopping: Stopping) -> Result<Vec<Gain>> {
+fn further(rows: &[&Row], accelerators: &[(usize, &str)], stopping: Stopping) -> Result<Vec<Gain>> {
     let any_samples: Forget = |image, schedule| {
         any_accelerator(image, schedule);
         image.spp = 0;
@@ -263,8 +265,8 @@ fn further(rows: &[&Row], accelerators: &[(usize, &str)], yardstick: &str, stopp
             Repeats::of(own, any_samples, |row| row.makespan_s)
         };
         let further = |name: &str| -> Result<Repeats> { Ok(seconds(name, *most)?.minus(&seconds(name, *least)?)) };
-        let of_yardstick = further(yardstick)?;
-        for (_, name) in accelerators.iter().filter(|(_, name)| *name != yardstick) {
+        let of_yardstick = further(YARDSTICK)?;
+        for (_, name) in accelerators.iter().filter(|(_, name)| *name != YARDSTICK) {
             let told = of_yardstick.over(&further(name)?).median(stopping);
             // Renders that take no longer for more samples have no time of a further one.
             let Some(told) = told.filter(|told| told.value.is_finite()) else { continue };
@@ -276,13 +278,13 @@ fn further(rows: &[&Row], accelerators: &[(usize, &str)], yardstick: &str, stopp
 }
 
 /// A finding about the further samples of the largest image.
-fn marginal(further: &[Gain], yardstick: &str) -> Option<Block> {
+fn marginal(further: &[Gain]) -> Option<Block> {
     let workload = &further.last()?.workload;
     let own = further.iter().filter(|gain| gain.workload == *workload);
     let own = own.filter_map(|gain| Some((gain.accelerator.as_str(), Ratio::of(gain.told)?)));
     let (name, gain, open) = largest(own)?;
     Some(Block::finding(format!(
-        "{workload}: {yardstick} takes {} times as long as {name}{open}. A difference of times contains no fixed cost.",
+        "{workload}: {YARDSTICK} takes {} times as long as {name}{open}. A difference of times contains no fixed cost.",
         with_interval(gain.value, &gain.interval, 2)
     )))
 }

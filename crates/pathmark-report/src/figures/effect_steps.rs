@@ -88,10 +88,7 @@ pub(super) fn blocks(results: &Results, scenes: &[String]) -> Result<Vec<Block>>
 /// Keeps seed and size, but neither the scene nor the choices that fit it.
 fn another_scene(image: &mut ImageKey, schedule: &mut ScheduleKey) {
     any_kernel(image, schedule);
-    image.scene.clear();
-    image.scene_hash.clear();
-    image.max_depth = None;
-    image.roulette.clear();
+    image.forget_scene();
 }
 
 /// The kept images of each scene, by seed. All kernels render the same one.

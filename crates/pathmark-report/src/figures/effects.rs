@@ -9,8 +9,6 @@ use crate::titles::Sides;
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Options {
-    /// The profile that contains every effect.
-    largest: Option<String>,
     /// The effects to price.
     price: Vec<Price>,
     /// Scenes that add effects one by one.
@@ -44,6 +42,9 @@ struct Kind {
 /// The kernel that has a version for each profile.
 const SCALAR: &str = "scalar";
 
+/// The profile that contains every effect.
+const LARGEST: &str = "all";
+
 fn scalar() -> String {
     SCALAR.to_string()
 }
@@ -70,10 +71,7 @@ struct Times {
 
 /// Keeps the setting, but neither the scene nor the choices that fit it, so that rows with and without an effect pair.
 fn setting(image: &mut ImageKey, schedule: &mut ScheduleKey) {
-    image.scene.clear();
-    image.scene_hash.clear();
-    image.max_depth = None;
-    image.roulette.clear();
+    image.forget_scene();
     schedule.forget_kernel();
 }
 
@@ -90,7 +88,7 @@ impl Times {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { largest, price, steps } = options(&results.definition, "effects")?;
+    let Options { price, steps } = options(&results.definition, "effects")?;
     let times: BTreeMap<Kind, Times> =
         results.by(Kind::of).into_iter().map(|(kind, r)| (kind, Times::of(&r))).collect();
     let mut blocks = Vec::new();
@@ -101,7 +99,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         blocks.extend(prices(results, &own, &times, (kernel, stem, table)));
     }
     blocks.extend(effect_steps::blocks(results, &steps)?);
-    blocks.extend(scenes(results, largest.as_deref().unwrap_or("all")));
+    blocks.extend(scenes(results));
     if blocks.is_empty() {
         let text = "Nothing was run with and without an effect, so there is no price of one.";
         blocks.push(Block::notice(text));
@@ -237,12 +235,12 @@ struct Fit<'a> {
 }
 
 /// Compares the rows of each scene in the largest profile with those in the smallest other one.
-fn fits<'a>(results: &'a Results, largest: &str) -> Vec<Fit<'a>> {
+fn fits<'a>(results: &'a Results) -> Vec<Fit<'a>> {
     let of_scalar = results.rows().filter(|row| kernel(row) == SCALAR);
     let groups = group(of_scalar, |row| (row.scene.as_str(), row.accelerator.as_str()));
     let of_scene = |((scene, _), rows): ((&'a str, &str), Vec<&'a Row>)| {
         let mut by_profile = gathered(rows.into_iter().map(|row| (row.effects.as_str(), row)));
-        let all = Times::of(&by_profile.remove(largest)?);
+        let all = Times::of(&by_profile.remove(LARGEST)?);
         let names = in_table_order(by_profile.keys().copied(), PROFILES.iter().map(|entry| entry.name));
         let (_, profile) = *names.first()?;
         let fitting = Times::of(by_profile.get(profile)?);
@@ -262,8 +260,8 @@ fn fits<'a>(results: &'a Results, largest: &str) -> Vec<Fit<'a>> {
     fits
 }
 
-fn scenes(results: &Results, largest: &str) -> Vec<Block> {
-    let fits = fits(results, largest);
+fn scenes(results: &Results) -> Vec<Block> {
+    let fits = fits(results);
     let Some(overall) = median(&fits.iter().map(|fit| fit.ratio.value).collect::<Vec<f64>>()) else {
         return Vec::new();
     };

@@ -1,8 +1,6 @@
 //! Images of each estimator and sampler after the same time: those that a time limit ended, or else the points of curves
 //! that are nearest in time.
 
-use crate::analysis::mse::over_seeds;
-use crate::contenders::root_of_mean;
 use crate::experiment::EXTERNAL;
 use crate::image_io::Image;
 use crate::measure::Seconds;
@@ -82,9 +80,7 @@ struct Limited<'a> {
 impl<'a> Limited<'a> {
     fn of(race: Race<'a>, name: String, rows: Vec<&'a Row>, stopping: Stopping) -> Self {
         let rows: Vec<&Row> = group(rows, |row| row.seed).into_values().map(|own| own[0]).collect();
-        let mse = values(&rows, |row| row.mse);
-        let interval = over_seeds(&mse, LEVEL).map(|error| error.rmse.interval);
-        let rmse = Estimated { count: Some(mse.len()), ..Estimated::of(root_of_mean(&mse), interval) };
+        let rmse = Estimated::rmse(&values(&rows, |row| row.mse));
         let seconds = Estimated::typical(&values(&rows, |row| row.rendering_s()), stopping);
         Self { race, name, seconds, rmse: Some(rmse).filter(|rmse| rmse.value.is_finite()), rows }
     }

@@ -24,7 +24,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let cells = cells.collect::<Result<Vec<Cell>>>()?;
     let title = counted(cells.len(), "scene");
     let subtitle = "Below each name the estimator and its samples per pixel. Values above 1 are white.".to_string();
-    let sheet = ContactSheet::grid(title, subtitle, cells, Comparison::Single);
+    let sheet = ContactSheet::groups(title, subtitle, vec![cells], Comparison::Single);
     let table = Block::table("gallery", "Scenes", scenes.iter().map(|(record, _)| *record))
         .column("scene", |record| record.scene.clone())
         .column("shows", |record| shown(record).map_or_else(String::new, |scene| scene.about))

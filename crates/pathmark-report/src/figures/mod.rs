@@ -84,9 +84,9 @@ macro_rules! entries {
 pub const FIGURES: &[FigureEntry] = entries! {
     contact_sheet, "contact-sheet", NoOptions, "renders at growing spp beside the reference, with maps of their error";
     rmse_against_spp, "rmse-against-spp", rmse_against_spp::Options, "error against samples per pixel, with the fitted slope";
-    rmse_against_time, "rmse-against-time", rmse_against_time::Options, "error against seconds, a line per schedule";
+    rmse_against_time, "rmse-against-time", NoOptions, "error against seconds, a line per schedule";
     error_against_time, "error-against-time", NoOptions, "error against seconds, a line per estimator and sampler";
-    price_list, "price-list", price_list::Options, "seconds to each accuracy, and predictions of later points from earlier ones";
+    price_list, "price-list", NoOptions, "seconds to each accuracy, and predictions of later points from earlier ones";
     pairs, "pairs", NoOptions, "every two estimators and samplers against each other at equal error and at equal time";
     equal_time, "equal-time", NoOptions, "images of each estimator and sampler after the same time";
     estimators, "estimators", NoOptions, "speed to the same error relative to the first estimator, by scene";
@@ -106,7 +106,7 @@ pub const FIGURES: &[FigureEntry] = entries! {
     cost_map, "cost-map", NoOptions, "seconds of each tile over the image";
     generators, "generators", generators::Options, "time by random number generator and threads, with context switches";
     mistakes, "mistakes", mistakes::Options, "errors on purpose beside the right way: time, and error of the image's mean";
-    outputs, "outputs", Yardstick, "time and memory of each output, by which pieces get into the film";
+    outputs, "outputs", NoOptions, "time and memory of each output, by which pieces get into the film";
     roughness, "roughness", roughness::Options, "a rough material with directions by the cosine and by its facets: images, variance, time";
     openmp, "openmp", Yardstick, "time of each strategy as a multiple of OpenMP's dynamic schedule";
     self_test, "self-test", NoOptions, "how often a cell that is measured twice appears to differ from itself";
@@ -116,9 +116,9 @@ pub const FIGURES: &[FigureEntry] = entries! {
     gallery, "gallery", NoOptions, "a picture of every scene, and the effects that it calls for";
     scene_accuracy, "scene-accuracy", scene_accuracy::Options, "error, path length and price of accuracy by scene";
     effects, "effects", effects::Options, "cost of an effect: absent, compiled in but unused, used";
-    kernels, "kernels", kernels::Options, "samples per second of lanes over those of the scalar kernel, by instruction set and precision";
+    kernels, "kernels", NoOptions, "samples per second of lanes over those of the scalar kernel, by instruction set and precision";
     precision, "precision", NoOptions, "time, error, light, escapes and invalid samples of single precision beside double";
-    acceleration, "acceleration", Yardstick, "time per ray against primitives and gain against spp, by accelerator";
+    acceleration, "acceleration", NoOptions, "time per ray against primitives and gain against spp, by accelerator";
     losses, "losses", NoOptions, needs serial, "why a schedule is not as many times as fast as it has workers: work inflation, idle time, merge";
     schedules, "schedules", NoOptions, "time, load imbalance and context switches of each schedule";
 };

@@ -4,19 +4,12 @@ use crate::error::Result;
 use crate::experiment::Definition;
 use crate::input::parse_within;
 use crate::results::Results;
+use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
 
-/// The options of a figure. A definition without such a table, as in old folders, gets the options of the experiment of
-/// the same name that the program contains.
+/// The options of a figure.
 pub(crate) fn options<T: DeserializeOwned + Default>(definition: &Definition, figure: &str) -> Result<T> {
-    let path = ["figure", figure];
-    if definition.figure.contains_key(figure) {
-        return Ok(parse_within(&definition.text, &definition.file, &path)?.unwrap_or_default());
-    }
-    let built_in = Definition::known(&definition.lab).find(|(name, _)| *name == definition.name);
-    let found = built_in.map_or(Ok(None), |(name, text)| parse_within(text, &format!("{name}.toml"), &path))?;
-    Ok(found.unwrap_or_default())
+    Ok(parse_within(&definition.text, &definition.file, &["figure", figure])?.unwrap_or_default())
 }
 
 /// Refuses options that a figure does not have.
@@ -40,17 +33,4 @@ pub(crate) struct Yardstick {
 pub(crate) fn yardstick(results: &Results, figure: &str, default: &str) -> Result<String> {
     let found: Yardstick = options(&results.definition, figure)?;
     Ok(found.yardstick.unwrap_or_else(|| default.to_string()))
-}
-
-/// A number above zero.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "f64")]
-pub(crate) struct Positive(pub(crate) f64);
-
-impl TryFrom<f64> for Positive {
-    type Error = &'static str;
-
-    fn try_from(value: f64) -> std::result::Result<Self, Self::Error> {
-        if value > 0.0 && value.is_finite() { Ok(Self(value)) } else { Err("must be a positive number") }
-    }
 }

@@ -3,6 +3,9 @@
 use crate::measure::OUTPUTS;
 use crate::prelude::*;
 
+/// The output that the others are compared with.
+const YARDSTICK: &str = "slots";
+
 /// The rows of an output on the same pieces and threads.
 struct Line<'a> {
     output: &'a str,
@@ -13,7 +16,6 @@ struct Line<'a> {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let yardstick = yardstick(results, "outputs", "slots")?;
     let groups = results.by(|row| (row.output.as_str(), row.decomposition.as_str(), row.threads));
     let kinds: Vec<(&str, usize)> = results.by(|row| (row.decomposition.as_str(), row.threads)).into_keys().collect();
     let outputs = in_table_order(groups.keys().map(|(output, ..)| *output), OUTPUTS.iter().map(|entry| entry.name));
@@ -21,8 +23,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         groups.get(&(output, decomposition, threads)).map_or(&[][..], Vec::as_slice)
     };
     let cells = outputs.iter().flat_map(|(_, output)| kinds.iter().map(move |kind| (*output, *kind)));
-    let others = cells.clone().filter(|(output, _)| *output != yardstick);
-    let pairs = others.map(|cell| (cell, of(cell), of((yardstick.as_str(), cell.1))));
+    let others = cells.clone().filter(|(output, _)| *output != YARDSTICK);
+    let pairs = others.map(|cell| (cell, of(cell), of((YARDSTICK, cell.1))));
     let ratios = time_ratios(pairs, |_, schedule| schedule.output.clear(), results.stopping())?;
     let ratios: BTreeMap<_, Ratio> = ratios.into_iter().collect();
     let lines = cells.map(|cell| {
@@ -39,20 +41,20 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     });
     let slowest = titles::largest_above_1(lines.iter().filter_map(|line| Some((line, line.ratio?))));
     let result = slowest.map_or_else(
-        || format!("No output takes longer than {yardstick} beyond the noise"),
+        || format!("No output takes longer than {YARDSTICK} beyond the noise"),
         |(line, ratio)| {
             let crew = counted(line.threads, "thread");
             format!("{} takes {} with {}, {crew}", line.output, titles::longer(ratio.value), line.decomposition)
         },
     );
     let mut plot = DotPlot::new(
-        Title::new(format!("Time by output, against {yardstick}"))
+        Title::new(format!("Time by output, against {YARDSTICK}"))
             .with_result(lines.iter().any(|line| line.ratio.is_some()).then_some(result)),
-        Axis::linear(format!("time / time with {yardstick}")).including([0.95, 1.05]),
+        Axis::linear(format!("time / time with {YARDSTICK}")).including([0.95, 1.05]),
         rows.filter(|row| row.dots.iter().any(Option::is_some)).collect(),
     )
     .in_areas(crews.iter().map(|threads| counted(*threads, "thread")));
-    plot.guides = vec![(1.0, yardstick.clone())];
+    plot.guides = vec![(1.0, YARDSTICK.to_string())];
     plot.subtitle = results.workload();
     plot.caption = ratio_bars(lines.iter().filter_map(|line| line.ratio));
     // Not every output was tried on all pieces.
@@ -62,8 +64,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("pieces", |line| line.decomposition.to_string())
         .column("threads", |line| line.threads.to_string())
         .number("median ms", Decimals(3), |line| typical(line.rows, |row| Some(row.makespan_s? * 1e3)))
-        .estimated(format!("time / time with {yardstick}"), Decimals(3), |line| {
-            if line.output == yardstick { Some(Estimated::of(1.0, None)) } else { line.ratio.map(Estimated::from) }
+        .estimated(format!("time / time with {YARDSTICK}"), Decimals(3), |line| {
+            if line.output == YARDSTICK { Some(Estimated::of(1.0, None)) } else { line.ratio.map(Estimated::from) }
         })
         .number("ms to put the film together", Decimals(3), |line| typical(line.rows, |row| Some(row.merge_s? * 1e3)))
         .number("peak memory, MiB", Decimals(1), |line| {

@@ -2,7 +2,7 @@
 
 use super::kernels::any_kernel;
 use crate::analysis::mean::t_interval;
-use crate::contenders::root_of_mean;
+use crate::estimated::root_of_mean;
 use crate::plot::number::short;
 use crate::prelude::*;
 

@@ -1,19 +1,10 @@
 //! The price list: samples and seconds to each accuracy, and predictions of later points from earlier ones.
 
-use crate::contenders::{Check, Contender, contenders};
+use crate::contenders::{Check, Contender, GOALS, contenders};
 use crate::plot::Dot;
 use crate::prelude::*;
 
-#[derive(Deserialize, Default)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Options {
-    /// The RMSEs to price, in linear radiance.
-    goals: Option<Vec<Positive>>,
-}
-
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let goals = options::<Options>(&results.definition, "price-list")?.goals;
-    let goals = goals.unwrap_or_else(|| [0.1, 0.05, 0.02, 0.01].map(Positive).to_vec());
     let scenes = contenders(results)?;
     let all: Vec<&Contender> = scenes.values().flatten().collect();
     if all.is_empty() {
@@ -23,19 +14,19 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let name = |contender: &Contender| {
         if scenes.len() > 1 { format!("{}: {}", contender.image.scene, contender.name) } else { contender.name.clone() }
     };
-    let seconds = |contender: &Contender, goal: Positive| Some(contender.renderer.price(goal.0)?.seconds);
+    let seconds = |contender: &Contender, goal: f64| Some(contender.renderer.price(goal)?.seconds);
     let dots = |contender: &Contender| {
-        let dot = |goal: &Positive| {
-            Some(Dot { hollow: is_beyond(contender, goal.0), ..Estimated::from(seconds(contender, *goal)?).dot() })
+        let dot = |goal: f64| {
+            Some(Dot { hollow: is_beyond(contender, goal), ..Estimated::from(seconds(contender, goal)?).dot() })
         };
-        goals.iter().map(dot).collect()
+        GOALS.map(dot).to_vec()
     };
     let rows = all.iter().map(|contender| DotRow::new(name(contender), dots(contender))).collect();
-    let title = Title::new("What each accuracy costs").with_result(result(&scenes, &goals));
+    let title = Title::new("What each accuracy costs").with_result(result(&scenes));
     let plot = DotPlot::new(title, Axis::log("seconds of rendering"), rows);
-    let mut plot = plot.grouped(goals.iter().map(|goal| format!("RMSE {}", goal.0)));
+    let mut plot = plot.grouped(GOALS.map(|goal| format!("RMSE {goal}")));
     plot.subtitle = results.workload();
-    plot.caption = format!("Bars: 95 % interval of error and time together. {}", extrapolated(&all, &goals));
+    plot.caption = format!("Bars: 95 % interval of error and time together. {}", extrapolated(&all));
     let checks: Vec<(&Contender, Option<Check>)> =
         all.iter().map(|contender| (*contender, contender.check())).collect();
     let mut blocks = vec![Block::figure("price-list", plot)];
@@ -49,9 +40,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             own.renderer.efficiency().map(Estimated::from)
         });
     table = table.number("least RMSE that was measured", Significant(3), |(contender, _)| least_error(contender));
-    for goal in &goals {
-        let head = format!("seconds to an RMSE of {}", goal.0);
-        table = table.estimated(head, Significant(3), |(contender, _)| seconds(contender, *goal).map(Estimated::from));
+    for goal in GOALS {
+        let head = format!("seconds to an RMSE of {goal}");
+        table = table.estimated(head, Significant(3), |(contender, _)| seconds(contender, goal).map(Estimated::from));
     }
     let table = table
         .number("predicted for spp", Decimals(0), |(_, found)| found.as_ref().map(|check| f64::from(check.spp)))
@@ -63,15 +54,15 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 
 /// The result in a line, in the scene with the most contenders: the lowest and the highest price of the error that most
 /// of them reach.
-fn result(scenes: &BTreeMap<String, Vec<Contender>>, goals: &[Positive]) -> Option<String> {
+fn result(scenes: &BTreeMap<String, Vec<Contender>>) -> Option<String> {
     let (scene, all) = scenes.iter().rev().max_by_key(|(_, contenders)| contenders.len())?;
     let priced = |goal: f64| -> Vec<(&str, Estimated)> {
         let reached = all.iter().filter(|contender| !is_beyond(contender, goal));
         let price = |own: &Contender| Some(Estimated::from(own.renderer.price(goal)?.seconds));
         reached.filter_map(|own| Some((own.name.as_str(), price(own)?))).collect()
     };
-    let goals = goals.iter().map(|goal| (goal.0, priced(goal.0)));
-    let (goal, found) = goals.max_by(|a, b| a.1.len().cmp(&b.1.len()).then(b.0.total_cmp(&a.0)))?;
+    let goals = GOALS.map(|goal| (goal, priced(goal)));
+    let (goal, found) = goals.into_iter().max_by(|a, b| a.1.len().cmp(&b.1.len()).then(b.0.total_cmp(&a.0)))?;
     if found.len() < 2 {
         return None;
     }
@@ -97,8 +88,8 @@ fn is_beyond(contender: &Contender, goal: f64) -> bool {
 }
 
 /// The number of prices beyond the measured samples, in words.
-fn extrapolated(all: &[&Contender], goals: &[Positive]) -> String {
-    let prices = || all.iter().flat_map(|contender| goals.iter().map(move |goal| (contender, goal.0)));
+fn extrapolated(all: &[&Contender]) -> String {
+    let prices = || all.iter().flat_map(|contender| GOALS.map(|goal| (contender, goal)));
     let beyond = prices().filter(|(contender, goal)| is_beyond(contender, *goal)).count();
     let count = prices().count();
     match beyond {
@@ -133,20 +124,19 @@ mod tests {
     use crate::measure::Record;
     use crate::tests::{results, row, svg};
 
-    /// MSE = 1/n up to 16 samples: an RMSE of .5 lies within the curve, one of .2 beyond it.
+    /// MSE = scale / n up to 16 samples: a scale of .02 ends at an RMSE of .035, which .1 and .05 lie above.
     #[test]
     fn extrapolated_prices_are_hollow() {
-        let mut rows = Vec::new();
-        for (seed, spp) in (1..=3_u32).flat_map(|seed| [1, 4, 16].map(|spp| (seed, spp))) {
-            let mse = (1.0 + 0.01 * f64::from(seed)) / f64::from(spp);
-            let makespan_s = Some(f64::from(spp) * (1.0 + 0.01 * f64::from(seed)));
-            rows.push(Record { seed: seed.into(), spp, mse: Some(mse), makespan_s, ..row() });
-        }
-        let figure = |goals: &str| {
-            let options = format!("[figure.price-list]\ngoals = {goals}");
-            svg(&blocks(&results(&["price-list"], &options, rows.clone()).unwrap()).unwrap(), "price-list")
+        let figure = |scale: f64| {
+            let mut rows = Vec::new();
+            for (seed, spp) in (1..=3_u32).flat_map(|seed| [1, 4, 16].map(|spp| (seed, spp))) {
+                let factor = 1.0 + 0.01 * f64::from(seed);
+                let (mse, makespan_s) = (scale * factor / f64::from(spp), Some(factor * f64::from(spp)));
+                rows.push(Record { seed: seed.into(), spp, mse: Some(mse), makespan_s, ..row() });
+            }
+            svg(&blocks(&results(&["price-list"], "", rows).unwrap()).unwrap(), "price-list")
         };
-        assert!(figure("[0.5, 0.2]").contains("Hollow: extrapolated beyond the measured samples, 1 of 2 prices"));
-        assert!(figure("[0.5]").contains("Every price lies within the measured samples"));
+        assert!(figure(0.02).contains("Hollow: extrapolated beyond the measured samples, 2 of 4 prices"));
+        assert!(figure(0.001).contains("Every price lies within the measured samples"));
     }
 }

@@ -1,9 +1,9 @@
 //! Error against samples per pixel on two logarithmic axes. Independent samples fall along a line of slope -1/2.
 
 use crate::analysis::jackknife::SeedCurves;
-use crate::analysis::mse::over_seeds;
 use crate::analysis::slope::{PowerLaw, power_law};
-use crate::contenders::{curves_by, one_per_seed, root_of_mean};
+use crate::contenders::{curves_by, one_per_seed};
+use crate::estimated::root_of_mean;
 use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
@@ -73,8 +73,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     for (index, (name, rows)) in results.by(|row| results.image_name(row)).into_iter().enumerate() {
         let at_spp = group(rows.iter().copied(), |row| row.spp).into_iter().filter_map(|(spp, rows)| {
             let mse = one_per_seed(&rows, values.mse());
-            let interval = over_seeds(&mse, LEVEL).map(|error| error.rmse.interval);
-            let error = Estimated { count: Some(mse.len()), ..Estimated::of(root_of_mean(&mse), interval) };
+            let error = Estimated::rmse(&mse);
             let other = root_of_mean(&one_per_seed(&rows, values.other().mse()));
             (!mse.is_empty()).then(|| Line { image: name.clone(), spp, seeds: mse.len(), error, other })
         });

@@ -6,17 +6,9 @@
 
 use crate::analysis::jackknife::Curve as ErrorCurve;
 use crate::analysis::measured_price::{Crossing, MeasuredPrice, Timed};
-use crate::analysis::mse::over_seeds;
-use crate::contenders::{curves_of_seeds, one_per_seed, root_of_mean};
+use crate::contenders::{GOALS, curves_of_seeds, one_per_seed};
 use crate::plot::Panels;
 use crate::prelude::*;
-
-#[derive(Deserialize, Default)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Options {
-    /// The RMSEs to price, in linear radiance.
-    goals: Option<Vec<Positive>>,
-}
 
 /// Scene and size: times in others are not compared with its times.
 type Setting<'a> = (&'a str, u32, u32);
@@ -92,9 +84,7 @@ fn lines(results: &Results) -> Vec<Line<'_>> {
     let cells = groups.iter().flat_map(|(of, rows)| {
         let by_spp = group(rows.iter().copied(), |row| row.spp).into_iter();
         by_spp.map(move |(spp, rows)| {
-            let mse = one_per_seed(&rows, |row| row.mse);
-            let interval = over_seeds(&mse, LEVEL).map(|error| error.rmse.interval);
-            let rmse = Estimated { count: Some(mse.len()), ..Estimated::of(root_of_mean(&mse), interval) };
+            let rmse = Estimated::rmse(&one_per_seed(&rows, |row| row.mse));
             ((of, spp, rmse), Repeats::of_rows(rows, |row| row.rendering_s()))
         })
     });
@@ -106,8 +96,6 @@ fn lines(results: &Results) -> Vec<Line<'_>> {
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let goals = options::<Options>(&results.definition, "rmse-against-time")?.goals;
-    let goals = goals.unwrap_or_else(|| [0.1, 0.05, 0.02, 0.01].map(Positive).to_vec());
     let lines = lines(results);
     let by_setting = gathered(lines.iter().map(|line| (line.of.setting, line)));
     let Some((main, _)) = by_setting.iter().rev().max_by_key(|(_, lines)| lines.len()) else {
@@ -166,8 +154,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     } else {
         Block::figure("rmse-against-time", Panels { main: first, others })
     };
-    let findings = findings(&by_setting[main], &goals).into_iter().flatten();
-    Ok([figure].into_iter().chain(findings).chain([prices(&lines, &goals), points(&lines)]).collect())
+    let findings = findings(&by_setting[main]).into_iter().flatten();
+    Ok([figure].into_iter().chain(findings).chain([prices(&lines), points(&lines)]).collect())
 }
 
 /// The result in the scene with the most lines: the factor on the seconds that halves the error.
@@ -185,7 +173,7 @@ fn result(lines: &[&Line<'_>]) -> Option<String> {
 }
 
 /// Compares the prices of the smallest goal that most lines of a scene have reached.
-fn findings(lines: &[&Line<'_>], goals: &[Positive]) -> Option<[Block; 2]> {
+fn findings(lines: &[&Line<'_>]) -> Option<[Block; 2]> {
     let measured = |goal: f64| {
         let price = |line: &&Line<'_>| match line.price(goal) {
             Some(MeasuredPrice::Between(found)) => Some((line.of.name(), found)),
@@ -193,7 +181,7 @@ fn findings(lines: &[&Line<'_>], goals: &[Positive]) -> Option<[Block; 2]> {
         };
         (goal, lines.iter().filter_map(price).collect::<Vec<_>>())
     };
-    let falling = goals.iter().map(|goal| measured(goal.0));
+    let falling = GOALS.into_iter().map(measured);
     let (goal, found) = falling.max_by(|a, b| a.1.len().cmp(&b.1.len()).then(b.0.total_cmp(&a.0)))?;
     let cheapest = found.iter().min_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds))?;
     let most_expensive = found.iter().max_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds))?;
@@ -218,8 +206,8 @@ fn findings(lines: &[&Line<'_>], goals: &[Positive]) -> Option<[Block; 2]> {
 }
 
 /// The price of each goal along each line.
-fn prices(lines: &[Line<'_>], goals: &[Positive]) -> Block {
-    let all = lines.iter().flat_map(|line| goals.iter().map(move |goal| (line, goal.0, line.price(goal.0))));
+fn prices(lines: &[Line<'_>]) -> Block {
+    let all = lines.iter().flat_map(|line| GOALS.map(|goal| (line, goal, line.price(goal))));
     let seconds = |price: &Option<MeasuredPrice>| match price {
         Some(MeasuredPrice::Between(found)) => Some(Estimated::of(found.seconds, found.interval)),
         _ => None,

@@ -2,15 +2,12 @@
 //! accurate; a control exchanges the materials of one scene.
 
 use crate::analysis::mean::t_interval;
-use crate::analysis::mse::over_seeds;
 use crate::analysis::rank::spearman;
 use crate::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Options {
-    /// Error at which prices are compared, relative to the mean radiance.
-    goal: Option<Positive>,
     /// The same box with three pairs of balls.
     control: Option<Control>,
 }
@@ -20,7 +17,6 @@ pub(super) struct Options {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Control {
     /// With diffuse balls.
-    #[serde(alias = "matt")]
     diffuse: String,
     /// With a mirror and a glass ball.
     glass: String,
@@ -47,15 +43,16 @@ struct Accuracy {
 }
 
 impl Accuracy {
-    /// CPU seconds until the image has this error, which falls with the root of the samples.
-    fn price_s(&self, goal: f64) -> f64 {
-        let spp = f64::from(self.image.spp) * (self.error.value / goal) * (self.error.value / goal);
+    /// CPU seconds until the image has an error of 1 % of the mean radiance; errors fall with the root of the samples.
+    fn price_s(&self) -> f64 {
+        let times = self.error.value / 0.01;
+        let spp = f64::from(self.image.spp) * times * times;
         spp * self.pixels * self.sample_s
     }
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Options { goal, control } = options(&results.definition, "scene-accuracy")?;
+    let Options { control } = options(&results.definition, "scene-accuracy")?;
     let mut scenes = accuracies(results)?;
     if scenes.is_empty() {
         let text = "There is no accuracy by scene: it takes errors against references, and the kept images.";
@@ -66,7 +63,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut blocks = vec![Block::figure("scene-accuracy", chart(results, &scenes, correlation.as_ref()))];
     blocks.extend(correlation.as_ref().map(claim));
     blocks.extend(control.and_then(|control| controlled(&scenes, &control)));
-    blocks.push(table(&scenes, goal.map_or(0.01, |goal| goal.0)));
+    blocks.push(table(&scenes));
     Ok(blocks)
 }
 
@@ -81,14 +78,13 @@ fn accuracies(results: &Results) -> Result<Vec<Accuracy>> {
         let radiance = images.iter().sum::<f64>() / images.len() as f64;
         let first = *rows.first()?;
         let mse = |row: &Row| Some(row.mse? / (radiance * radiance));
-        let squares = Repeats::of_images(rows.iter().copied(), without_scene, mse).values();
-        let interval = over_seeds(&squares, LEVEL).map(|error| error.rmse.interval);
-        let error = Estimated::of((squares.iter().sum::<f64>() / squares.len() as f64).sqrt(), interval);
+        let squares = Repeats::of_images(rows.iter().copied(), ImageKey::forget_scene, mse).values();
+        let error = Estimated { count: None, ..Estimated::rmse(&squares) };
         let series = results.series_name(first);
         let accuracy = Accuracy {
             name: if series.is_empty() { image.scene.clone() } else { series },
             radiance,
-            by_seed: Repeats::of_images(rows.iter().copied(), without_scene, |row| Some(mse(row)?.sqrt())),
+            by_seed: Repeats::of_images(rows.iter().copied(), ImageKey::forget_scene, |row| Some(mse(row)?.sqrt())),
             error,
             rays: typical(&rows, |row| Some(row.rays? as f64 / row.samples? as f64))?,
             sample_s: typical(&rows, |row| Some(row.cpu_s()? / row.samples? as f64))?,
@@ -104,18 +100,10 @@ fn kind(row: &Row) -> ImageKey {
     row.image.without_seed()
 }
 
-/// Clears the scene, and what a scene decides.
-fn without_scene(image: &mut ImageKey) {
-    image.scene.clear();
-    image.scene_hash.clear();
-    image.max_depth = None;
-    image.roulette.clear();
-}
-
 /// The setting of an image apart from its scene and seed. Errors in different settings are not compared.
 fn setting(scene: &Accuracy) -> ImageKey {
     let mut image = scene.image.clone();
-    without_scene(&mut image);
+    image.forget_scene();
     image
 }
 
@@ -212,7 +200,7 @@ fn controlled(scenes: &[Accuracy], control: &Control) -> Option<Block> {
     )))
 }
 
-fn table(scenes: &[Accuracy], goal: f64) -> Block {
+fn table(scenes: &[Accuracy]) -> Block {
     let variance = |scene: &Accuracy| f64::from(scene.image.spp) * scene.error.value * scene.error.value;
     Block::table("scene-accuracy-table", "Accuracy by scene, most accurate first", scenes)
         .column("scene", |scene| scene.name.clone())
@@ -225,6 +213,6 @@ fn table(scenes: &[Accuracy], goal: f64) -> Block {
         .number("efficiency, 1 / (relative variance of a sample x µs)", Decimals(4), |scene| {
             1.0 / (variance(scene) * scene.sample_s * 1e6)
         })
-        .number(format!("processor seconds to {} % error", 100.0 * goal), Decimals(2), |scene| scene.price_s(goal))
+        .number("processor seconds to 1 % error", Decimals(2), |scene| scene.price_s())
         .end()
 }

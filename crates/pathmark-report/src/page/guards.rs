@@ -3,7 +3,7 @@
 use crate::experiment::{Chapter, read_run_file};
 use crate::guard_prices::{FILE, FOLDER, PriceRow, read_prices};
 use crate::page::Section;
-use crate::plot::{Dot, number};
+use crate::plot::number;
 use crate::prelude::*;
 use std::path::Path;
 
@@ -69,9 +69,6 @@ fn result(rows: &[PriceRow]) -> Option<String> {
 fn plot(rows: &[PriceRow], machine: String) -> DotPlot {
     let share = |row: &PriceRow| Some(percent(row).map(|share| share.dot()));
     let mut sorted: Vec<&PriceRow> = rows.iter().filter(|row| row.share.is_some()).collect();
-    if sorted.is_empty() {
-        return plot_of_ratios(rows, machine);
-    }
     sorted.sort_by(|a, b| b.share.unwrap_or(0.0).total_cmp(&a.share.unwrap_or(0.0)));
     let name = |row: &PriceRow| format!("{} ({}, {})", row.guard, row.scene, row.often);
     let named = sorted.into_iter().filter_map(|row| Some(DotRow { name: name(row), dots: vec![share(row)?] }));
@@ -90,20 +87,6 @@ fn plot(rows: &[PriceRow], machine: String) -> DotPlot {
 fn percent(row: &PriceRow) -> Option<Estimated> {
     let interval = row.share_low.zip(row.share_high).map(|(low, high)| Interval { low, high, level: LEVEL });
     Some(Estimated { count: row.processes, ..Estimated::of(row.share?, interval) }.times(100.0))
-}
-
-/// The plot of files without shares.
-fn plot_of_ratios(rows: &[PriceRow], machine: String) -> DotPlot {
-    let dot = |row: &PriceRow| Some(Dot::new(row.time_ratio?, row.time_ratio_low.zip(row.time_ratio_high)));
-    let named = rows.iter().map(|row| DotRow { name: row.guard.clone(), dots: vec![dot(row)] }).collect();
-    let mut plot =
-        DotPlot::new("What each guard costs in its operation", Axis::log("time with the guard / time without"), named);
-    plot.subtitle = machine;
-    plot.caption =
-        "Bars: 95 % interval of the ratio in adjacent rounds. The table says what goes wrong without each guard."
-            .to_string();
-    plot.guides = vec![(1.0, "as fast".to_string())];
-    plot
 }
 
 fn prices(rows: &[PriceRow]) -> Block {

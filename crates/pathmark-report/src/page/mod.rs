@@ -3,7 +3,6 @@
 mod address;
 mod again;
 mod answers;
-pub(crate) mod benches;
 pub(crate) mod block;
 pub(crate) mod bursts;
 mod compact;
@@ -24,7 +23,7 @@ use crate::plot::Figure;
 use crate::prelude::joined;
 use crate::results::Results;
 use crate::words::counted;
-pub(crate) use address::href;
+pub(crate) use address::{href, way};
 use again::Again;
 use block::Block;
 use compact::Styles;
@@ -65,7 +64,7 @@ pub(crate) fn is_page(path: &Path) -> bool {
 /// Tables with more rows start closed.
 const OPEN_ROWS: usize = 12;
 
-/// A part of the page: an experiment, the guards, the bursts, the benches or the claims.
+/// A part of the page: an experiment, the guards, the bursts or the claims.
 #[derive(Default)]
 pub(crate) struct Section {
     /// Its name, from which its anchor is made.

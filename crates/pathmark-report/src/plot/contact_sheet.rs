@@ -106,12 +106,7 @@ pub struct ContactSheet {
 const COLUMNS: usize = 4;
 
 impl ContactSheet {
-    /// A sheet of images in rows that fit on a page.
-    pub fn grid(title: String, subtitle: String, cells: Vec<Cell>, comparison: Comparison) -> Self {
-        Self::groups(title, subtitle, vec![cells], comparison)
-    }
-
-    /// The same for groups of images, each of which begins a row.
+    /// A sheet of groups of images in rows that fit on a page. Each group begins a row.
     pub fn groups(title: String, subtitle: String, groups: Vec<Vec<Cell>>, comparison: Comparison) -> Self {
         let rows = groups.into_iter().flat_map(|cells| {
             let cells: Vec<Option<Cell>> = cells.into_iter().map(Some).collect();

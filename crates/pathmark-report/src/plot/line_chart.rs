@@ -121,8 +121,6 @@ pub struct LineChart {
     pub dodge: f64,
     /// Words beside points, such as their samples per pixel.
     pub words: Vec<(Point, String)>,
-    /// Whether each series is named at the end of its line, where the names fit, instead of in a legend.
-    pub named_at_ends: bool,
 }
 
 impl LineChart {
@@ -148,7 +146,7 @@ impl LineChart {
     pub fn new(title: impl Into<Title>, x: Axis, y: Axis, series: Vec<Series>) -> Self {
         let (subtitle, caption) = (String::new(), String::new());
         let (overlays, words) = (Vec::new(), Vec::new());
-        Self { title: title.into(), subtitle, caption, x, y, series, overlays, dodge: 0.0, words, named_at_ends: true }
+        Self { title: title.into(), subtitle, caption, x, y, series, overlays, dodge: 0.0, words }
     }
 
     /// The ranges of both axes; `None` if no point can be drawn.
@@ -266,9 +264,7 @@ impl LineChart {
     /// Whether the names stand at the ends of the lines: all have an end, and the names fit beside the data.
     fn is_named_at_ends(&self, names: &[EndName<'_>]) -> bool {
         let has_end = |series: &Series| series.points.iter().any(|point| self.has_place(point));
-        self.named_at_ends
-            && self.series.iter().all(has_end)
-            && end_labels::fit(names.iter().map(|name| name.text.as_str()))
+        self.series.iter().all(has_end) && end_labels::fit(names.iter().map(|name| name.text.as_str()))
     }
 
     /// The part of the drawing that a guide or fit belongs to: a fit goes with its series if its name does.

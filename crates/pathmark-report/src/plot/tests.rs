@@ -18,7 +18,6 @@ fn speedups(count: usize) -> LineChart {
     let mut chart = LineChart::new("Speedup <against> threads & more", x, y, series);
     chart.subtitle = "cornell; ".repeat(30);
     chart.caption = "A caption of some length. ".repeat(8);
-    chart.named_at_ends = false;
     chart.overlays = vec![
         Overlay::guide("ideal", Curve::Line { intercept: 0.0, slope: 1.0 }),
         Overlay::fit("a fit with a long annotation\nover two lines", Curve::Line { intercept: 0.1, slope: 0.8 }, 0),
@@ -118,7 +117,7 @@ fn lines_are_named_at_their_ends_where_the_names_fit() {
     let named = |count: usize| {
         let fit = Overlay::fit("fit", Curve::Line { intercept: 0.1, slope: 0.8 }, 0);
         let overlays = vec![Overlay::guide("ideal", Curve::Line { intercept: 0.0, slope: 1.0 }), fit];
-        LineChart { named_at_ends: true, overlays, ..speedups(count) }.drawing()
+        LineChart { overlays, ..speedups(count) }.drawing()
     };
     let drawing = named(8);
     assert_legible(&drawing);
@@ -134,7 +133,7 @@ fn lines_are_named_at_their_ends_where_the_names_fit() {
     assert!(!says(&named(40), "strategy-number-0 (fit)"));
     assert_legible(&named(40));
     // A line without a point has no end.
-    let mut empty = LineChart { named_at_ends: true, ..speedups(2) };
+    let mut empty = speedups(2);
     empty.series[1].points.clear();
     assert!(says(&empty.drawing(), "strategy-number-1 (no data)"));
 }

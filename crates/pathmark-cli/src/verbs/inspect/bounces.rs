@@ -63,22 +63,25 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
             "camera_rays": choice.camera_rays(),
             "mean": total(&found).map(number), "samples": found.samples, "rays": found.rays, "invalid_samples": found.invalid,
             "parts": found.parts(), "mean_length": found.mean_length().map(number), "longest": found.longest(),
-            "bounces": rows.iter().map(object).collect::<Vec<Value>>(),
+            "bounces": json_of(&rows)?,
         }));
     }
     print(&text(&scene.name, spec, arguments.samples.spp, &found, &rows))
 }
 
 /// Light and paths with one number of bounces.
+#[derive(Serialize)]
 struct Row {
     bounces: usize,
     /// Mean radiance.
     light: [f64; 3],
     /// Share of the light, all channels together.
     share: f64,
+    #[serde(rename = "running_share")]
     running: f64,
     ended: u64,
     ended_share: f64,
+    #[serde(rename = "running_ended_share")]
     ended_running: f64,
 }
 
@@ -105,13 +108,6 @@ fn rows(found: &LightByBounce) -> Vec<Row> {
         Row { bounces, light, share, running, ended: row.ended, ended_share, ended_running }
     });
     rows.collect()
-}
-
-fn object(row: &Row) -> Value {
-    json!({
-        "bounces": row.bounces, "light": row.light.map(number), "share": number(row.share), "running_share": number(row.running),
-        "ended": row.ended, "ended_share": row.ended_share, "running_ended_share": row.ended_running,
-    })
 }
 
 fn text(name: &str, spec: &Spec, spp: u32, found: &LightByBounce, rows: &[Row]) -> String {

@@ -19,7 +19,7 @@ use crate::simulate::hardware::Hardware;
 use crate::simulate::overhead::Overhead;
 
 pub(super) fn replay(costs: &[f64], processors: usize, overhead: &Overhead, hardware: &Hardware) -> Replay {
-    let capacity = capacity(&hardware.average_speeds(processors));
+    let capacity = capacity(&hardware.fastest_first(processors));
     let caller = costs.len();
     let (mut now_s, mut progress_s, mut started) = (overhead.run_s, 0.0, 0);
     let mut spans = vec![JobSpan::default(); costs.len()];

@@ -1,7 +1,7 @@
 //! Makespans that can be worked out by hand.
 
 use super::*;
-use crate::simulate::{Noise, Speeds, bounds, longest_first};
+use crate::simulate::{bounds, longest_first};
 use crate::strategy::{Amount, ChunkRule, STRATEGIES, Start, Stealing, Victim, find};
 
 const FREE: Overhead = Overhead { run_s: 0.0, start_s: 0.0, job_s: 0.0, take_s: 0.0, shared_s: 0.0 };
@@ -154,23 +154,20 @@ fn threads_share_the_processors() {
 
 #[test]
 fn unequal_processors() {
-    let on = |speeds, discipline, workers| {
-        let hardware = Hardware { speeds, ..Hardware::default() };
-        replay(&[1.0; 12], discipline, workers, &FREE, &hardware).makespan_s
-    };
+    let on = |hardware, discipline, workers| replay(&[1.0; 12], discipline, workers, &FREE, &hardware).makespan_s;
     // Dealt jobs wait for the slow processor; with single jobs, free workers take the jobs that it cannot run in time.
-    assert_eq!(on(Speeds::OneSlow(0.5), BLOCKS, 4), 6.0);
-    assert_eq!(on(Speeds::OneSlow(0.5), SINGLE, 4), 4.0);
-    assert_eq!(on(Speeds::Mixed { performance: 2, efficient: 0.5 }, CYCLIC, 4), 6.0);
-    assert_eq!(on(Speeds::Mixed { performance: 2, efficient: 0.5 }, SINGLE, 4), 4.0);
-    assert_eq!(on(Speeds::Mixed { performance: 2, efficient: 0.5 }, Discipline::AllAtOnce, 4), 4.0);
+    assert_eq!(on(Hardware::OneSlow(0.5), BLOCKS, 4), 6.0);
+    assert_eq!(on(Hardware::OneSlow(0.5), SINGLE, 4), 4.0);
+    assert_eq!(on(Hardware::Mixed { performance: 2, efficient: 0.5 }, CYCLIC, 4), 6.0);
+    assert_eq!(on(Hardware::Mixed { performance: 2, efficient: 0.5 }, SINGLE, 4), 4.0);
+    assert_eq!(on(Hardware::Mixed { performance: 2, efficient: 0.5 }, Discipline::AllAtOnce, 4), 4.0);
 }
 
 /// 20 000 equal jobs on four workers, the first half as fast: the minimum is 20 000 / 3.5. Rules that learn the speeds,
 /// or are given them, come within 1 % of that; blocks take 75 % longer.
 #[test]
 fn rules_that_know_speeds_share_by_them() {
-    let hardware = Hardware { speeds: Speeds::OneSlow(0.5), ..Hardware::default() };
+    let hardware = Hardware::OneSlow(0.5);
     let on = |discipline| replay(&vec![1.0; 20_000], discipline, 4, &FREE, &hardware).makespan_s * 3.5 / 20_000.0;
     assert_eq!(on(BLOCKS), 1.75);
     for (name, parameter) in
@@ -182,13 +179,4 @@ fn rules_that_know_speeds_share_by_them() {
     // Wrong weights are worse than none.
     let of = |weights| on(find("weighted-factoring").unwrap().discipline(Some(weights)).unwrap());
     assert!(of("4:1:1:1") > 1.2 && of("1") < 1.01, "{} {}", of("4:1:1:1"), of("1"));
-}
-
-#[test]
-fn noise_lengthens_long_work_on_average() {
-    let hardware = Hardware { noise: Noise::new(0.2, 1e-3, 7), ..Hardware::default() };
-    for discipline in [BLOCKS, SINGLE, Discipline::AllAtOnce] {
-        let made = replay(&[1.0; 400], discipline, 4, &FREE, &hardware).makespan_s;
-        assert!((made / 125.0 - 1.0).abs() < 0.02, "{made} under {discipline:?}");
-    }
 }

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use super::Replay;
 use crate::measure::{JobSpan, Trace};
-use crate::simulate::hardware::{Hardware, Processor};
+use crate::simulate::hardware::Hardware;
 use crate::simulate::overhead::Overhead;
 use crate::strategy::Seen;
 
@@ -38,7 +38,8 @@ impl Ord for Time {
 pub(super) struct Crew<'a> {
     costs: &'a [f64],
     overhead: &'a Overhead,
-    processors: Vec<Processor>,
+    /// The speed of each worker's processor.
+    speeds: Vec<f64>,
     free: BinaryHeap<Reverse<(Time, usize)>>,
     spans: Vec<JobSpan>,
     last_s: f64,
@@ -54,7 +55,7 @@ impl<'a> Crew<'a> {
         Self {
             costs,
             overhead,
-            processors: (0..workers).map(|worker| Processor::new(hardware, worker)).collect(),
+            speeds: (0..workers).map(|worker| hardware.speed(worker)).collect(),
             free: (0..workers).map(|worker| Reverse((Time(started_s(worker)), worker))).collect(),
             spans: vec![JobSpan::default(); costs.len()],
             last_s: overhead.run_s,
@@ -67,7 +68,7 @@ impl<'a> Crew<'a> {
     }
 
     pub(super) fn workers(&self) -> usize {
-        self.processors.len()
+        self.speeds.len()
     }
 
     /// Removes and returns the worker that is free first, with the time. [`Crew::ask_again`] puts it back.
@@ -84,15 +85,15 @@ impl<'a> Crew<'a> {
     pub(super) fn through_shared_place(&mut self, worker: usize, jobs: usize, now_s: f64) -> f64 {
         let begin_s = now_s.max(self.place_s);
         self.place_s = begin_s + jobs as f64 * self.overhead.shared_s;
-        self.place_s.max(begin_s + self.processors[worker].elapsed_s(self.overhead.take_s))
+        self.place_s.max(begin_s + self.overhead.take_s / self.speeds[worker])
     }
 
     /// Lets `worker` run `jobs` one after the other from `now_s` on, and returns when it has finished.
     pub(super) fn work(&mut self, worker: usize, jobs: impl IntoIterator<Item = usize>, mut now_s: f64) -> f64 {
-        let processor = &mut self.processors[worker];
+        let speed = self.speeds[worker];
         for job in jobs {
-            let start_s = now_s + processor.elapsed_s(self.overhead.job_s);
-            now_s = start_s + processor.elapsed_s(self.costs[job]);
+            let start_s = now_s + self.overhead.job_s / speed;
+            now_s = start_s + self.costs[job] / speed;
             self.spans[job] = JobSpan { worker: worker as u32, start_s, stop_s: now_s };
         }
         // A worker that finds no job was started too, and the caller waits for it.

@@ -1,8 +1,8 @@
 //! Replays: jobs of known costs on virtual workers, from event to event.
 //!
 //! All disciplines are exact in the model: a free worker asks at once, hand-outs
-//! take the times in [`Overhead`], and ties go to the worker with the lower number. Only noise and the choice of random
-//! victims are random, with seeds. A replay costs O(log P) per job, apart from the interruptions of noise.
+//! take the times in [`Overhead`], and ties go to the worker with the lower number. Only the choice of random
+//! victims is random, with seeds. A replay costs O(log P) per job.
 
 mod all_at_once;
 mod crew;
