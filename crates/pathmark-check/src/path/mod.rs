@@ -24,11 +24,7 @@ pub(super) const SECTION: Section = Section {
         case("P07", "the spread that roulette brings", roulette::spread),
         case("P08", "cut after D vertices: Le (1 - rho^D)/(1 - rho), and said", cuts::depth),
         case("P09", "samples clamped to 1: (1 - rho^10)/(1 - rho), and said", cuts::clamp),
-        case(
-            "P10",
-            "NaN, infinite and negative samples are left out, counted and told by address",
-            invalid_samples::injected,
-        ),
+        case("P10", "NaN, infinite, negative samples: left out, counted and told", invalid_samples::injected),
         case("P11", "the sum of a million samples and more", sums::long_sums),
         case("P12", "the variance of values far from 0", sums::variance),
         case("P13", "sums of which almost all cancels", sums::cancellation),
