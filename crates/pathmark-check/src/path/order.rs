@@ -7,6 +7,7 @@ use crate::film::{Assembly, Bounds, DECOMPOSITIONS, SAMPLE_BLOCK, SampleSum, Til
 use crate::kernel::{KERNELS, Spec};
 use crate::math::{Rgb, sin_cos_turns};
 use crate::measure::Settings;
+use crate::rendering::{self, spec};
 use crate::sampling::SAMPLERS;
 use crate::scene::load;
 use crate::strategy::{STRATEGIES, Workers};
@@ -73,7 +74,7 @@ fn images(trials: &mut Trials) {
     let scene = load("cornell").expect("a shipped scene");
     // Three subtrees of 32, 16 and 4 samples, so that a wrong order of addition shows.
     let small = |kernel: &str| {
-        let spec = Spec { width: 9, height: 7, seed: 7, kernel: kernel.to_string(), ..Spec::default() };
+        let spec = spec("smallpt", kernel, [9, 7], 7);
         Settings { spp: 52, spec, decomposition: "rows".into(), strategy: "serial".into(), ..Settings::default() }
     };
     let examples = DECOMPOSITIONS.iter().map(|entry| entry.example);
@@ -110,11 +111,9 @@ pub(super) fn bits(trials: &mut Trials) {
     let scene = load("cornell").expect("a shipped scene");
     let by_bsdf = SAMPLERS.iter().filter_map(|entry| Some(("bsdf", entry.name, entry.checksum?)));
     for (estimator, sampler, expected) in by_bsdf.chain([SMALLPT]) {
-        let (estimator, sampler) = (estimator.to_string(), sampler.to_string());
         let what = format!("cornell, {estimator}, {sampler}");
-        let spec = Spec { width: 96, height: 64, seed: 7, estimator, sampler, ..Spec::default() };
-        let settings = Settings { spp: 8, spec, ..Settings::default() };
-        trials.same(what, Some(expected.to_string()), run(&scene, settings).checksum);
+        let spec = Spec { sampler: sampler.to_string(), ..spec(estimator, KERNELS[0].name, [96, 64], 7) };
+        trials.same(what, Some(expected.to_string()), rendering::run(&scene, spec, 8).checksum);
     }
     own_functions(trials);
 }

@@ -2,11 +2,10 @@
 
 use crate::Trials;
 use crate::estimator::{ESTIMATORS, Options, Roulette, any_estimator};
-use crate::exact::{Bench, arriving_estimators, critical, full_estimators, run, with_kernels};
+use crate::exact::{Bench, arriving_estimators, critical, full_estimators, with_kernels};
 use crate::kernel::Spec;
 use crate::math::{Ray, Vec3};
-use crate::measure::Settings;
-use crate::rendering::Moments;
+use crate::rendering::{Moments, run, spec};
 use crate::sampling::{Address, SampleKey, Sampler};
 use crate::scene::Scene;
 use crate::stage::hollow;
@@ -64,11 +63,9 @@ pub(super) fn black(trials: &mut Trials) {
     for (estimator, kernel) in with_kernels(full_estimators()) {
         for rule in ["albedo:5", "albedo:0", "throughput:0", "never"] {
             let roulette = Some(rule.to_string());
-            let (estimator, kernel) = (estimator.to_string(), kernel.to_string());
             let what = format!("{rule}, {estimator}, {kernel}");
             let arrives = arriving_estimators().any(|name| name == estimator);
-            let spec = Spec { width: 8, height: 6, estimator, kernel, roulette, ..Spec::default() };
-            let outcome = run(&scene, Settings { spp: 4, spec, ..Settings::default() });
+            let outcome = run(&scene, Spec { roulette, ..spec(estimator, kernel, [8, 6], 1) }, 4);
             let others = outcome.film.pixels().iter().filter(|pixel| pixel.mean() != [3.0, 0.0, 0.5]).count();
             trials.never(&what, "other pixels", others as u64, 48);
             if arrives {
@@ -112,11 +109,9 @@ pub(super) fn spread(trials: &mut Trials) {
         for (rule, weight) in [("albedo:0", 1.0), ("albedo:5", rho5)] {
             for (estimator, kernel) in with_kernels(arriving_estimators()) {
                 let what = format!("rho {rho}, {rule}, {estimator}, {kernel}");
-                let (estimator, kernel) = (estimator.to_string(), kernel.to_string());
                 let roulette = Some(rule.to_string());
-                let spec = Spec { width: 32, height: 32, seed: 22, estimator, kernel, roulette, ..Spec::default() };
-                let film = run(&scene, Settings { spp, spec, ..Settings::default() }).film;
-                let Moments { mean, variance, n } = Moments::of(&film, 0);
+                let spec = Spec { roulette, ..spec(estimator, kernel, [32; 2], 22) };
+                let Moments { mean, variance, n } = Moments::of(&run(&scene, spec, spp).film, 0);
                 let exact = weight * weight * deviation * deviation;
                 let z_mean = (mean - 1.0 / (1.0 - rho)) / (exact / n).sqrt();
                 let z_variance = (variance / exact - 1.0) / ((8.0 + (1.0 - rho) * (1.0 - rho) / rho) / n).sqrt();
