@@ -19,7 +19,7 @@ pub(super) const SECTION: Section = Section {
         case("P02", "ten thousand bounces on a stack of 128 KiB", long_paths::ten_thousand),
         case("P03", "throughputs down to the smallest number", long_paths::underflow),
         case("P04", "random numbers at the chance to survive", roulette::at_the_chance),
-        case("P05", "black surfaces end the path", roulette::black),
+        case("P05", "black surfaces end the path: their survival is 0", roulette::black),
         case("P06", "every rule of roulette keeps the mean", roulette::fair),
         case("P07", "the spread that roulette brings", roulette::spread),
         case("P08", "cut after D vertices: Le (1 - rho^D)/(1 - rho), and said", cuts::depth),

@@ -2,9 +2,10 @@
 
 use crate::Trials;
 use crate::estimator::{ESTIMATORS, Options, Roulette, any_estimator};
-use crate::exact::{Bench, arriving_estimators, critical, full_estimators, with_kernels};
+use crate::exact::{Bench, arriving_estimators, critical, every_estimator, full_estimators, with_kernels};
 use crate::kernel::Spec;
 use crate::math::{Ray, Vec3};
+use crate::measure::Outcome;
 use crate::rendering::{Moments, run, spec};
 use crate::sampling::{Address, SampleKey, Sampler};
 use crate::scene::Scene;
@@ -57,20 +58,19 @@ pub(super) fn at_the_chance(trials: &mut Trials) {
     }
 }
 
-/// One ray per path, and exactly the emission of the surface.
+/// One ray per path, and exactly the emission of the surface, also by estimators that aim at light or have no roulette.
 pub(super) fn black(trials: &mut Trials) {
     let scene = hollow(&diffuse([0.0; 3]), [3.0, 0.0, 0.5]);
-    for (estimator, kernel) in with_kernels(full_estimators()) {
-        for rule in ["albedo:5", "albedo:0", "throughput:0", "never"] {
-            let roulette = Some(rule.to_string());
-            let what = format!("{rule}, {estimator}, {kernel}");
-            let arrives = arriving_estimators().any(|name| name == estimator);
-            let outcome = run(&scene, Spec { roulette, ..spec(estimator, kernel, [8, 6], 1) }, 4);
-            let others = outcome.film.pixels().iter().filter(|pixel| pixel.mean() != [3.0, 0.0, 0.5]).count();
+    for (estimator, kernel) in with_kernels(every_estimator()) {
+        let rules = [None, Some("albedo:5"), Some("albedo:0"), Some("throughput:0"), Some("never")];
+        let has_roulette = full_estimators().any(|name| name == estimator);
+        for rule in rules.into_iter().filter(|rule| has_roulette || rule.is_none()) {
+            let what = format!("{}, {estimator}, {kernel}", rule.unwrap_or("its own rule"));
+            let spec = Spec { roulette: rule.map(str::to_string), ..spec(estimator, kernel, [8, 6], 1) };
+            let Outcome { film, counts, .. } = run(&scene, spec, 4);
+            let others = film.pixels().iter().filter(|pixel| pixel.mean() != [3.0, 0.0, 0.5]).count();
             trials.never(&what, "other pixels", others as u64, 48);
-            if arrives {
-                trials.same(format!("{what}: rays"), outcome.counts.paths, outcome.counts.rays);
-            }
+            trials.same(format!("{what}: rays, invalid"), (counts.paths, 0), (counts.rays, counts.invalid));
         }
     }
 }

@@ -84,7 +84,6 @@ pub(super) const SECTION: Section = Section {
         case("S60", "the light's sphere ends where it cuts the ceiling's", smallpt_box::light_cap),
         case("S61", "the balls sink into the curved floor: glass ends there, not in air", smallpt_box::sunken_balls),
         case("S62", "camera rays start inside the box, at the rims of the filter too", smallpt_box::camera_rays),
-        case("S63", "black walls: their survival is 0, and every path ends at the first", chains::black_walls),
         case("S64", "1e4 mirror bounces in a sphere of 1e5: the direction keeps its length", chains::mirror_chain),
     ],
 };
