@@ -28,7 +28,7 @@ pub(super) const SECTION: Section = Section {
         case("P11", "the sum of a million samples and more", sums::long_sums),
         case("P12", "the variance of values far from 0", sums::variance),
         case("P13", "sums of which almost all cancels", sums::cancellation),
-        case("P14", "samples and pieces in any order", order::orders),
+        case("P14", "samples and pieces in any order, by every sampler", order::orders),
         case("P15", "every pixel in one piece, whatever is left over", pieces::cover),
         case("P16", "report D's grids", pieces::grids),
         case("P17", "one bright pixel changes no other", display::firefly),

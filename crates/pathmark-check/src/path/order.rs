@@ -13,7 +13,7 @@ use crate::scene::load;
 use crate::strategy::{STRATEGIES, Workers};
 use rand::Rng;
 use rand_pcg::Pcg64Mcg;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 fn uniform(random: &mut Pcg64Mcg) -> f64 {
@@ -69,31 +69,37 @@ pub(super) fn orders(trials: &mut Trials) {
     images(trials);
 }
 
-/// The image is the same for every strategy, decomposition and number of threads.
+/// The image of each sampler is the same for every strategy, decomposition and number of threads.
 fn images(trials: &mut Trials) {
     let scene = load("cornell").expect("a shipped scene");
     // Three subtrees of 32, 16 and 4 samples, so that a wrong order of addition shows.
-    let small = |kernel: &str| {
-        let spec = spec("smallpt", kernel, [9, 7], 7);
+    let small = |kernel: &str, sampler: &str| {
+        let spec = Spec { sampler: sampler.to_string(), ..spec("smallpt", kernel, [9, 7], 7) };
         Settings { spp: 52, spec, decomposition: "rows".into(), strategy: "serial".into(), ..Settings::default() }
     };
     let examples = DECOMPOSITIONS.iter().map(|entry| entry.example);
     let decompositions: Vec<&str> = examples.chain(["tiles:1x1", "tiles:5x3:spiral", "samples:16:4x4"]).collect();
+    let samplers = || SAMPLERS.iter().filter(|entry| entry.deterministic).map(|entry| entry.name);
+    let pairs = || samplers().flat_map(|sampler| decompositions.iter().map(move |own| (*own, sampler)));
     // A quick run takes two of them in turn.
-    let few = trials.times(2, decompositions.len() as u64) as usize;
-    let mut turns = decompositions.iter().cycle();
+    let few = trials.times(2, pairs().count() as u64) as usize;
+    let mut turns = pairs().cycle();
     for kernel in KERNELS {
         let checksum = |settings| run(&scene, settings).checksum;
-        let expected = checksum(small(kernel.name));
+        let of = |sampler| (sampler, checksum(small(kernel.name, sampler)));
+        let expected: BTreeMap<&str, Option<String>> = samplers().map(of).collect();
+        let told = format!("{expected:?}");
+        trials.holds(format!("{}, serial", kernel.name), "checksums", told, expected.values().all(Option::is_some));
         for strategy in STRATEGIES {
             // One thread is enough for strategies that ignore the number of threads.
             let threads: &[usize] = if strategy.workers == Workers::Threads { &[1, 2, 8] } else { &[1] };
             let mut others = Vec::new();
             for &threads in threads {
-                for decomposition in turns.by_ref().take(few) {
+                for (decomposition, sampler) in turns.by_ref().take(few) {
                     let (strategy, decomposition) = (strategy.name.to_string(), decomposition.to_string());
-                    let what = format!("{decomposition} on {threads}");
-                    if checksum(Settings { decomposition, strategy, threads, ..small(kernel.name) }) != expected {
+                    let what = format!("{decomposition} by {sampler} on {threads}");
+                    let settings = Settings { decomposition, strategy, threads, ..small(kernel.name, sampler) };
+                    if checksum(settings) != expected[sampler] {
                         others.push(what);
                     }
                 }

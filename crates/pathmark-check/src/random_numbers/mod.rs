@@ -24,7 +24,6 @@ pub(super) const SECTION: Section = Section {
         case("R05", "no key of pixels and seeds makes a generator of zeros", keys::zeros),
         case("R06", "no two addresses share their numbers; the mix is a bijection", keys::collisions),
         case("R07", "noise of seeds s and s + 2^k at all lags, draws and images", seeds::seeds),
-        case("R08", "one checksum for every strategy and number of threads", threads::one_checksum),
         case("R12", "generators that threads share: flagged, fair and never the same for two threads", threads::shared),
         case("R09", "0 and 1 - 2^-53 through every camera, material, light and estimator", extremes::consumers),
         case("R11", "free paths in fog for 0, 1 - 2^-53 and all between", extremes::free_paths),
