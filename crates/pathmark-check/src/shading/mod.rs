@@ -1,7 +1,7 @@
 //! Cases about frames, Fresnel, microfacets and lights.
 
 mod agreement;
-mod balance;
+pub(crate) mod balance;
 mod cones;
 mod degenerate;
 mod directions;
