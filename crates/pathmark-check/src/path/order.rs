@@ -7,36 +7,19 @@ use crate::film::{Assembly, Bounds, DECOMPOSITIONS, SAMPLE_BLOCK, SampleSum, Til
 use crate::kernel::{KERNELS, Spec};
 use crate::math::{Rgb, sin_cos_turns};
 use crate::measure::Settings;
+use crate::random::Random;
 use crate::rendering::{self, spec};
 use crate::sampling::SAMPLERS;
 use crate::scene::load;
 use crate::strategy::{STRATEGIES, Workers};
-use rand::Rng;
-use rand_pcg::Pcg64Mcg;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
-
-fn uniform(random: &mut Pcg64Mcg) -> f64 {
-    ((random.next_u64() >> 11) as f64 + 0.5) / 9_007_199_254_740_992.0
-}
-
-/// Exponential of a normal variate with standard deviation 3, by G. E. P. Box and M. E. Muller (1958).
-fn log_normal(random: &mut Pcg64Mcg) -> f64 {
-    let radius = (-2.0 * libm::log(uniform(random))).sqrt();
-    libm::exp(3.0 * radius * libm::cos(TAU * uniform(random)))
-}
-
-fn shuffle<T>(values: &mut [T], random: &mut Pcg64Mcg) {
-    for last in (1..values.len()).rev() {
-        values.swap(last, (random.next_u64() % (last as u64 + 1)) as usize);
-    }
-}
 
 /// 4096 log-normal samples in 1000 orders: running sums give dozens of results, pieces of a film give one.
 pub(super) fn orders(trials: &mut Trials) {
     const BOUNDS: Bounds = Bounds { x0: 0, y0: 0, x1: 1, y1: 1 };
-    let mut random = Pcg64Mcg::new(14);
-    let values: Vec<f64> = (0..4096).map(|_| log_normal(&mut random)).collect();
+    let mut random = Random::new(14);
+    let values: Vec<f64> = (0..4096).map(|_| libm::exp(random.normal(3.0))).collect();
     let piece = |start: u32| {
         let mut sum = SampleSum::default();
         values[start as usize..(start + SAMPLE_BLOCK) as usize].iter().for_each(|value| sum.add(Rgb::WHITE * *value));
@@ -49,8 +32,8 @@ pub(super) fn orders(trials: &mut Trials) {
     let (mut fixed, mut running) = (BTreeSet::new(), BTreeSet::new());
     let count = trials.times(200, 1000);
     for _ in 0..count {
-        shuffle(&mut pieces, &mut random);
-        shuffle(&mut shuffled, &mut random);
+        random.shuffle(&mut pieces);
+        random.shuffle(&mut shuffled);
         let mut assembly = Assembly::new(1, 1, 0..4096).expect("memory for a pixel");
         for (samples, tile) in &pieces {
             assembly.add(samples, tile.clone());
