@@ -195,27 +195,6 @@ fn names_that_lead_elsewhere_are_refused() {
     }
 }
 
-/// A spreadsheet would evaluate names that begin like a formula.
-#[test]
-fn names_that_a_spreadsheet_evaluates_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
-    for name in ["=1+1.toml", "+1.toml", "-1.toml", "@sum.toml", "\t=1.toml"] {
-        write(name, TINY);
-        let path = format!("./{name}");
-        let said = ["experiment = ./", "spreadsheet", "begin with =, +, -, @"];
-        refused(folder.path(), &["run", &path, "--out", "out"], 2, &said);
-        // The same file as a scene.
-        write(name, "about = 'x'\nbase = 'cornell'\n");
-        write_tiny(folder.path(), &TINY.replace("\"cornell\"", &format!("{path:?}")));
-        refused(folder.path(), &["run", "tiny.toml", "--out", "out"], 2, &["scene = ./", "spreadsheet"]);
-    }
-    let other = "[[external]]\nname = \"=1+1\"\ncommand = [\"no-such-program\", \"{spp}\", \"{seed}\", \"{out}\"]\n\
-                 scene = \"cornell\"\nspp = [4]\nseed = [1]\n";
-    write_tiny(folder.path(), &format!("{TINY}\n{other}"));
-    refused(folder.path(), &["run", "tiny.toml", "--out", "out"], 2, &["name = =1+1", "spreadsheet"]);
-}
-
 /// Invalid values for `--set`, and a figure that would have nothing to compare with.
 #[test]
 fn values_that_cannot_be_set_are_refused() {

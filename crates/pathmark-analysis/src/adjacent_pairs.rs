@@ -10,8 +10,9 @@
 //! many processes a few may be disturbed for their whole life; from sixteen on, the eighth at either end does not count
 //! (`trimmed.rs`).
 
+use crate::bisection::smallest;
 use crate::equivalence::Measured;
-use crate::interval::{Estimate, Interval, is_level};
+use crate::interval::{Estimate, is_level};
 use crate::mean::{Moments, t_quantile};
 use crate::quantile::median;
 pub use crate::trimmed::FEWEST as FEWEST_TRIMMED;
@@ -50,10 +51,7 @@ pub struct Spread {
 /// Returns the ratio from the pairs of each process; `None` below [`FEWEST_PROCESSES`], for a process without pairs, for
 /// ratios that are not positive and finite, or without any spread.
 pub fn paired_ratio(processes: &[Vec<f64>], level: f64) -> Option<PairedRatio> {
-    let centre = log_ratio(processes)?;
-    let half_width = centre.half_width(level)?;
-    let [low, value, high] = [-half_width, 0.0, half_width].map(|distance| libm::exp(centre.value + distance));
-    let ratio = Estimate { value, interval: Interval::between(low, high, level)? };
+    let ratio = log_ratio(processes)?.estimate(level)?.exp()?;
     let pairs = processes.iter().map(Vec::len).sum();
     Some(PairedRatio { ratio, pairs, processes: processes.len(), spread: spread(processes)? })
 }
@@ -177,16 +175,9 @@ impl Spread {
         }
         let plans = (FEWEST_PROCESSES..=MOST).filter_map(|processes| {
             let enough = |pairs: usize| self.half_width(processes, pairs, level).is_some_and(|width| width <= share);
-            if !enough(MOST) {
-                return None;
-            }
-            let (mut few, mut many) = (0, MOST);
-            while many - few > 1 {
-                let middle = few.midpoint(many);
-                if enough(middle) { many = middle } else { few = middle }
-            }
-            let seconds = processes as f64 * (costs.process_s + many as f64 * costs.pair_s);
-            Some(PowerPlan { processes, pairs: many, half_width: self.half_width(processes, many, level)?, seconds })
+            let pairs = smallest(0, MOST, enough)?;
+            let seconds = processes as f64 * (costs.process_s + pairs as f64 * costs.pair_s);
+            Some(PowerPlan { processes, pairs, half_width: self.half_width(processes, pairs, level)?, seconds })
         });
         // More processes than needed for single pairs only add to the cost.
         let mut best: Option<PowerPlan> = None;

@@ -4,13 +4,14 @@
 //! "A comparison of the two one-sided tests procedure ...", 1987). Several statements share one level by Bonferroni's
 //! inequality, which the caller applies.
 
+use super::bisection::smallest;
+use super::interval::{Estimate, Interval};
 use super::mean::{Moments, fractional_t_quantile};
 
 /// A value with its error, for Student's t: the logarithm of a ratio, or an exponent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measured {
     pub value: f64,
-    /// Above 0.
     pub standard_error: f64,
     pub degrees_of_freedom: f64,
     /// The independent values behind it: processes or seeds.
@@ -18,12 +19,33 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// The mean of independent values; `None` below two values, without spread, or with a value that is not finite.
+    /// The mean of independent values; `None` below two values or with one that is not finite.
     pub(crate) fn of_mean(values: &[f64]) -> Option<Self> {
         let moments = Moments::of(values);
-        let standard_error = moments.standard_error().filter(|&error| error > 0.0)?;
-        let degrees_of_freedom = values.len() as f64 - 1.0;
+        let (standard_error, degrees_of_freedom) = (moments.standard_error()?, values.len() as f64 - 1.0);
         Some(Self { value: moments.mean()?, standard_error, degrees_of_freedom, units: values.len() })
+    }
+
+    pub(crate) fn has_spread(&self) -> bool {
+        self.standard_error > 0.0
+    }
+
+    /// The difference of two independent values, with Welch's degrees of freedom.
+    pub(crate) fn minus(self, other: Self) -> Self {
+        let [a, b] = [self, other].map(|own| own.standard_error * own.standard_error);
+        Self {
+            value: self.value - other.value,
+            standard_error: (a + b).sqrt(),
+            degrees_of_freedom: (a + b) * (a + b)
+                / (a * a / self.degrees_of_freedom + b * b / other.degrees_of_freedom),
+            units: self.units + other.units,
+        }
+    }
+
+    /// The value with its two-sided interval; `None` for a level that is none.
+    pub(crate) fn estimate(&self, level: f64) -> Option<Estimate> {
+        let interval = Interval::around(self.value, self.half_width(level)?, level)?;
+        Some(Estimate { value: self.value, interval })
     }
 
     /// Half of the two-sided interval; `None` for a level that is none.
@@ -46,15 +68,7 @@ pub enum Equivalence {
 /// Compares a value with an earlier one. `limit` is the largest difference that counts as equal. Returns the later value less
 /// the earlier one with the ends of its interval, and the verdict; `None` for a level or a limit that is none.
 pub fn equivalence(earlier: Measured, later: Measured, limit: f64, level: f64) -> Option<([f64; 3], Equivalence)> {
-    let [a, b] = [earlier, later].map(|own| own.standard_error * own.standard_error);
-    let degrees_of_freedom =
-        (a + b) * (a + b) / (a * a / earlier.degrees_of_freedom + b * b / later.degrees_of_freedom);
-    let difference = Measured {
-        value: later.value - earlier.value,
-        standard_error: (a + b).sqrt(),
-        degrees_of_freedom,
-        units: earlier.units + later.units,
-    };
+    let difference = later.minus(earlier);
     let (value, half) = (difference.value, difference.half_width(level)?);
     let limit = Some(limit).filter(|limit| *limit > 0.0 && limit.is_finite())?;
     let verdict = if value.abs() + half <= limit {
@@ -70,7 +84,6 @@ pub fn equivalence(earlier: Measured, later: Measured, limit: f64, level: f64) -
 /// How many more values of the later measurement would tell, if the difference stays; `None` if the earlier one alone is too
 /// uncertain, or the difference lies at the limit.
 pub fn more_units(earlier: Measured, later: Measured, limit: f64, level: f64) -> Option<usize> {
-    const MOST: usize = 1 << 12;
     let deviation = later.standard_error * (later.units as f64).sqrt();
     let with = |units: usize| Measured {
         standard_error: deviation / (units as f64).sqrt(),
@@ -82,15 +95,7 @@ pub fn more_units(earlier: Measured, later: Measured, limit: f64, level: f64) ->
         equivalence(earlier, with(later.units + more), limit, level)
             .is_some_and(|(_, verdict)| verdict != Equivalence::Open)
     };
-    let (mut few, mut many) = (0, MOST);
-    if !tells(many) {
-        return None;
-    }
-    while many - few > 1 {
-        let middle = few.midpoint(many);
-        if tells(middle) { many = middle } else { few = middle }
-    }
-    Some(many)
+    smallest(0, 1 << 12, tells)
 }
 
 #[cfg(test)]
@@ -144,7 +149,7 @@ mod tests {
         assert_eq!((found.value, found.degrees_of_freedom, found.units), (2.0, 2.0, 3));
         assert!((found.half_width(0.95).unwrap() - 4.302_653 / 3.0_f64.sqrt()).abs() < 1e-5);
         assert_eq!(found.half_width(0.0), None);
-        for wrong in [[2.0, 2.0].as_slice(), &[1.0], &[1.0, f64::NAN]] {
+        for wrong in [[1.0].as_slice(), &[1.0, f64::NAN]] {
             assert_eq!(Measured::of_mean(wrong), None);
         }
     }

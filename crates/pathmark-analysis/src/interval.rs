@@ -54,8 +54,16 @@ impl Estimate {
         let centre = value + other_value;
         let (down, up) =
             (libm::hypot(value - low, other_value - other_low), libm::hypot(high - value, other_high - other_value));
-        let interval = Interval::between(libm::exp(centre - down), libm::exp(centre + up), level)?;
-        Some(Self { value: libm::exp(centre), interval })
+        Self { value: centre, interval: Interval { low: centre - down, high: centre + up, level } }.exp()
+    }
+
+    /// Returns the estimate of the value whose logarithm this is; `None` if an end is not finite.
+    pub fn exp(&self) -> Option<Self> {
+        let Interval { low, high, level } = self.interval;
+        Some(Self {
+            value: libm::exp(self.value),
+            interval: Interval::between(libm::exp(low), libm::exp(high), level)?,
+        })
     }
 
     /// Returns the reciprocal; `None` for a value or an end that is not positive.

@@ -9,7 +9,7 @@
 //! 40, 1969).
 
 use super::equivalence::Measured;
-use super::interval::{Estimate, Interval};
+use super::interval::Estimate;
 use super::mean::t_interval;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -86,7 +86,7 @@ impl SeedCurves {
 
     /// The same value with its error, for a comparison of two measurements.
     pub(super) fn measured(&self, of: impl Fn(&Curve) -> Option<f64>) -> Option<Measured> {
-        Measured::of_mean(&self.pseudovalues(of)?)
+        Measured::of_mean(&self.pseudovalues(of)?).filter(Measured::has_spread)
     }
 
     fn pseudovalues(&self, of: impl Fn(&Curve) -> Option<f64>) -> Option<Vec<f64>> {
@@ -96,12 +96,7 @@ impl SeedCurves {
 
     /// Like [`Self::estimate`] for a positive value, by way of its logarithm, which varies more evenly.
     pub fn positive_estimate(&self, level: f64, of: impl Fn(&Curve) -> Option<f64>) -> Option<Estimate> {
-        let logarithm = self.estimate(level, |curve| of(curve).filter(|&value| value > 0.0).map(libm::log))?;
-        let Interval { low, high, level } = logarithm.interval;
-        Some(Estimate {
-            value: libm::exp(logarithm.value),
-            interval: Interval::between(libm::exp(low), libm::exp(high), level)?,
-        })
+        self.estimate(level, |curve| of(curve).filter(|&value| value > 0.0).map(libm::log))?.exp()
     }
 }
 

@@ -7,6 +7,7 @@ pub mod aa_test;
 pub mod adjacent_pairs;
 pub mod autocorrelation;
 pub mod balance;
+mod bisection;
 pub mod bootstrap;
 pub mod chi_square;
 pub mod confidence_sequence;

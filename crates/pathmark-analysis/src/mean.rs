@@ -5,6 +5,8 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
+use super::bisection::smallest;
+use super::equivalence::Measured;
 use super::interval::{Estimate, Interval, is_level};
 
 /// Count, mean and sum of squared deviations of a stream of values.
@@ -73,11 +75,7 @@ pub(crate) fn fractional_t_quantile(level: f64, degrees_of_freedom: f64) -> Opti
 
 /// The mean with its t-interval; `None` below two values, without spread, or with a value that is not finite.
 pub fn t_interval(values: &[f64], level: f64) -> Option<Estimate> {
-    let moments = Moments::of(values);
-    let standard_error = moments.standard_error().filter(|&error| error > 0.0)?;
-    let value = moments.mean()?;
-    let half_width = t_quantile(level, values.len() - 1)? * standard_error;
-    Some(Estimate { value, interval: Interval::around(value, half_width, level)? })
+    Measured::of_mean(values).filter(Measured::has_spread)?.estimate(level)
 }
 
 /// Returns the geometric mean of positive values with the t-interval of their logarithms, which never reaches below 0:
@@ -88,9 +86,7 @@ pub fn geometric_interval(values: &[f64], level: f64) -> Option<Estimate> {
         return None;
     }
     let logarithms: Vec<f64> = values.iter().map(|&value| libm::log(value)).collect();
-    let Estimate { value, interval } = t_interval(&logarithms, level)?;
-    let interval = Interval::between(libm::exp(interval.low), libm::exp(interval.high), level)?;
-    Some(Estimate { value: libm::exp(value), interval })
+    t_interval(&logarithms, level)?.exp()
 }
 
 /// The ratio of the means of two independent samples, with Student's interval of its logarithm and the degrees of freedom of B. L.
@@ -100,18 +96,13 @@ pub fn geometric_interval(values: &[f64], level: f64) -> Option<Estimate> {
 /// The whole interval of level 1 - 2 a lies within a margin exactly if both one-sided tests of level a reject a ratio beyond it (D.
 /// J. Schuirmann, "A comparison of the two one-sided tests procedure ...", 1987): then the means are equivalent.
 pub fn mean_ratio(above: &[f64], below: &[f64], level: f64) -> Option<Estimate> {
-    // Mean, squared relative error of the mean, and degrees of freedom.
+    // With its relative error, which is that of its logarithm.
     let side = |values: &[f64]| {
-        let moments = Moments::of(values);
-        let mean = moments.mean().filter(|&mean| mean > 0.0)?;
-        let error = moments.standard_error()? / mean;
-        Some((mean, error * error, values.len() as f64 - 1.0))
+        let mean = Measured::of_mean(values).filter(|mean| mean.value > 0.0)?;
+        Some(Measured { standard_error: mean.standard_error / mean.value, ..mean })
     };
-    let ((mean_a, error_a, free_a), (mean_b, error_b, free_b)) = (side(above)?, side(below)?);
-    let variance = Some(error_a + error_b).filter(|&variance| variance > 0.0)?;
-    let degrees_of_freedom = variance * variance / (error_a * error_a / free_a + error_b * error_b / free_b);
-    let factor = libm::exp(fractional_t_quantile(level, degrees_of_freedom)? * variance.sqrt());
-    let value = mean_a / mean_b;
+    let (above, below) = (side(above)?, side(below)?);
+    let (value, factor) = (above.value / below.value, libm::exp(above.minus(below).half_width(level)?));
     Some(Estimate { value, interval: Interval::between(value / factor, value * factor, level)? })
 }
 
@@ -121,15 +112,7 @@ pub fn fewest_values(deviation: f64, half_width: f64, level: f64) -> Option<usiz
     let is_enough =
         |n: usize| t_quantile(level, n - 1).is_some_and(|t| t * deviation / (n as f64).sqrt() <= half_width);
     // The half width falls with the number of values.
-    let (mut few, mut many) = (1, 1 << 20);
-    if !(deviation >= 0.0 && half_width > 0.0 && is_enough(many)) {
-        return None;
-    }
-    while many - few > 1 {
-        let middle = few.midpoint(many);
-        if is_enough(middle) { many = middle } else { few = middle }
-    }
-    Some(many)
+    (deviation >= 0.0 && half_width > 0.0).then(|| smallest(1, 1 << 20, is_enough)).flatten()
 }
 
 #[cfg(test)]

@@ -56,8 +56,7 @@ pub fn metg(grains: &[Grain], target: f64, level: f64) -> Metg {
             Metg::Value { seconds, .. } => Some([libm::log(seconds)]),
             _ => None,
         });
-        let ends = resampled.map(|[log]| (libm::exp(log.interval.low), libm::exp(log.interval.high)));
-        let interval = ends.and_then(|(low, high)| Interval::between(low, high, level));
+        let interval = resampled.and_then(|[log]| Some(log.exp()?.interval));
         return Metg::Value { seconds: at, interval, between, crossings };
     }
     found.unwrap_or(Metg::Undefined(NO_DATA))

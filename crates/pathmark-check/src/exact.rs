@@ -11,6 +11,7 @@ use crate::estimator::ESTIMATORS;
 use crate::film::{DECOMPOSITIONS, Film};
 use crate::kernel::{KERNELS, Spec};
 use crate::measure::{Outcome, Settings, Setup, available_threads};
+use crate::rendering::spec;
 use crate::scene::Scene;
 use crate::strategy::STRATEGIES;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -157,7 +158,7 @@ impl<'a> Bench<'a> {
         exact: &[f64],
     ) {
         for (estimator, kernel) in with_kernels(estimators) {
-            let spec = self.spec(estimator, kernel);
+            let spec = spec(estimator, kernel, self.size, 1);
             self.one(&format!("{what}, {estimator}, {kernel}"), scene, &spec, exact, self.by_pixel);
         }
     }
@@ -166,14 +167,9 @@ impl<'a> Bench<'a> {
     /// bound, and single pixels are not checked.
     pub(super) fn each_sampler(&mut self, what: &str, scene: &Scene, exact: &[f64]) {
         for sampler in crate::sampling::SAMPLERS.iter().filter(|entry| entry.deterministic) {
-            let spec = Spec { sampler: sampler.name.to_string(), ..self.spec("bsdf", KERNELS[0].name) };
+            let spec = Spec { sampler: sampler.name.to_string(), ..spec("bsdf", KERNELS[0].name, self.size, 1) };
             self.one(&format!("{what}, {}", sampler.name), scene, &spec, exact, false);
         }
-    }
-
-    fn spec(&self, estimator: &str, kernel: &str) -> Spec {
-        let [width, height] = self.size;
-        Spec { width, height, estimator: estimator.to_string(), kernel: kernel.to_string(), ..Spec::default() }
     }
 
     /// Renders about `samples` samples with every kernel and these estimators. Each film comes with its label.
@@ -184,7 +180,7 @@ impl<'a> Bench<'a> {
         samples: f64,
     ) -> Vec<(String, Film)> {
         let film = |(estimator, kernel)| {
-            let spec = self.spec(estimator, kernel);
+            let spec = spec(estimator, kernel, self.size, 1);
             (format!("{estimator}, {kernel}"), self.render(scene, spec, samples).film)
         };
         with_kernels(estimators).map(film).collect()

@@ -3,8 +3,9 @@
 use crate::math::{Vec3, dot};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
+use std::f64::consts::TAU;
 
-/// A generator of the random values that geometry cases use.
+/// A generator of random values.
 pub(super) struct Random(Pcg64Mcg);
 
 impl Random {
@@ -32,6 +33,16 @@ impl Random {
             if (0.01..1.0).contains(&dot(v, v)) {
                 return v.normalized();
             }
+        }
+    }
+    /// Normal with mean 0 and this standard deviation, by G. E. P. Box and M. E. Muller (1958).
+    pub(super) fn normal(&mut self, deviation: f64) -> f64 {
+        let mut uniform = || ((self.0.next_u64() >> 11) as f64 + 0.5) / (1u64 << 53) as f64;
+        deviation * (-2.0 * libm::log(uniform())).sqrt() * libm::cos(TAU * uniform())
+    }
+    pub(super) fn shuffle<T>(&mut self, values: &mut [T]) {
+        for last in (1..values.len()).rev() {
+            values.swap(last, self.below(last + 1));
         }
     }
 }

@@ -1,42 +1,37 @@
 //! Small renders of the cases, and the means of their images.
 
 use super::Trials;
+use crate::error::Result;
 use crate::film::Film;
 use crate::kernel::{KERNELS, Spec};
 use crate::measure::{Outcome, Settings, Setup, available_threads};
 use crate::scene::Scene;
 use std::sync::Arc;
 
-/// Renders `spp` samples of each pixel. Returns `None`, and records the reason, if the spec does not fit this scene.
-pub(super) fn try_render(trials: &mut Trials, scene: &Arc<Scene>, spec: Spec, spp: u32) -> Option<Outcome> {
-    let (decomposition, strategy) = ("rows".to_string(), "shared-counter".to_string());
-    let told = format!("{}, {}, {}", scene.name, spec.estimator, spec.kernel);
-    let settings = Settings { spp, spec, decomposition, strategy, threads: available_threads(), ..Settings::default() };
-    let outcome = Setup::for_scene(Arc::clone(scene), settings).and_then(|setup| setup.run(None));
-    outcome.map_err(|error| trials.skip(format!("{told}: {error}"))).ok()
+/// An image with default settings but for these.
+pub(super) fn spec(estimator: &str, kernel: &str, [width, height]: [u32; 2], seed: u64) -> Spec {
+    Spec { width, height, seed, estimator: estimator.into(), kernel: kernel.into(), ..Spec::default() }
 }
 
 pub(super) fn by_kernel(spec: &Spec) -> impl Iterator<Item = Spec> + '_ {
     KERNELS.iter().map(|kernel| Spec { kernel: kernel.name.to_string(), ..spec.clone() })
 }
 
-/// Renders a scene with default settings but for these.
-pub(super) fn render(
-    scene: &Scene,
-    kernel: &str,
-    estimator: &str,
-    (width, height): (u32, u32),
-    spp: u32,
-    seed: u64,
-) -> Outcome {
-    let spec = Spec { width, height, seed, estimator: estimator.into(), kernel: kernel.into(), ..Spec::default() };
-    run(scene, spec, spp)
+fn outcome(scene: &Arc<Scene>, spec: Spec, spp: u32) -> Result<Outcome> {
+    let (decomposition, strategy) = ("rows".to_string(), "shared-counter".to_string());
+    let settings = Settings { spp, spec, decomposition, strategy, threads: available_threads(), ..Settings::default() };
+    Setup::for_scene(Arc::clone(scene), settings)?.run(None)
 }
 
+/// Renders `spp` samples of each pixel. Returns `None`, and records the reason, if the spec does not fit this scene.
+pub(super) fn try_render(trials: &mut Trials, scene: &Arc<Scene>, spec: Spec, spp: u32) -> Option<Outcome> {
+    let told = format!("{}, {}, {}", scene.name, spec.estimator, spec.kernel);
+    outcome(scene, spec, spp).map_err(|error| trials.skip(format!("{told}: {error}"))).ok()
+}
+
+/// The same for a spec that fits.
 pub(super) fn run(scene: &Scene, spec: Spec, spp: u32) -> Outcome {
-    let (decomposition, strategy) = ("rows".into(), "shared-counter".into());
-    let settings = Settings { spp, spec, decomposition, strategy, threads: 2, ..Settings::default() };
-    super::exact::run(scene, settings)
+    outcome(&Arc::new(scene.clone()), spec, spp).expect("a render")
 }
 
 /// Mean over all samples of a film, and variance within the pixels.

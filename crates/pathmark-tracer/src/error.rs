@@ -42,6 +42,15 @@ impl Error {
     pub fn system(action: &'static str, path: impl AsRef<Path>, source: std::io::Error) -> Self {
         Self::System { action, path: path.as_ref().to_path_buf(), source }
     }
+
+    /// Lets `place` add the place to an input error that has none; other errors stay.
+    #[must_use]
+    pub fn placed(self, place: impl FnOnce(InputError) -> Self) -> Self {
+        match self {
+            Self::Input(input) if input.place.is_none() => place(*input),
+            other => other,
+        }
+    }
 }
 
 impl From<InputError> for Error {

@@ -40,12 +40,6 @@ fn parts(random: &mut Random) -> Vec<Part> {
     (0..BLOCKS).map(&mut part).collect()
 }
 
-fn shuffle(parts: &mut [Part], random: &mut Random) {
-    for end in (1..parts.len()).rev() {
-        parts.swap(end, random.below(end + 1));
-    }
-}
-
 fn as_they_arrive(parts: &[Part]) -> f64 {
     parts.iter().fold(PixelSum::default(), |sum, part| sum.plus(&part.sum)).sum[0]
 }
@@ -64,7 +58,7 @@ fn error(sum: fn(&[Part]) -> f64) -> Measured {
     let first = sum(&parts);
     let mut differ = 0;
     for _ in 0..orders {
-        shuffle(&mut parts, &mut random);
+        random.shuffle(&mut parts);
         differ += u64::from(sum(&parts).to_bits() != first.to_bits());
     }
     Measured::share(differ, orders)
@@ -73,6 +67,6 @@ fn error(sum: fn(&[Part]) -> f64) -> Measured {
 fn work(count: u64, sum: fn(&[Part]) -> f64) -> f64 {
     let mut random = Random::new(92);
     let mut parts = parts(&mut random);
-    shuffle(&mut parts, &mut random);
+    random.shuffle(&mut parts);
     (0..count).map(|_| black_box(sum(black_box(&parts)))).sum()
 }

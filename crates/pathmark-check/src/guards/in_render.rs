@@ -3,8 +3,9 @@
 
 use crate::analysis::quantile::median;
 use crate::error::Result;
-use crate::kernel::{Counts, Spec};
+use crate::kernel::Counts;
 use crate::measure::{Interleaved, Settings, Setup};
+use crate::rendering::spec;
 use serde::{Deserialize, Serialize};
 
 /// A scene that meets a guard, and how often a sample does.
@@ -67,22 +68,9 @@ const RENDERS: usize = 5;
 impl InRender {
     /// Renders the scene on one thread with the scalar kernel, whose formulas are those of the guards.
     pub(super) fn time(&self) -> Result<RenderTime> {
-        let spec = Spec {
-            width: 32,
-            height: 24,
-            estimator: "bsdf".to_string(),
-            kernel: "scalar".to_string(),
-            ..Spec::default()
-        };
-        let settings = Settings {
-            scene: self.scene.to_string(),
-            spp: 8,
-            spec,
-            decomposition: "tiles:16x16".to_string(),
-            strategy: "serial".to_string(),
-            threads: 1,
-            ..Settings::default()
-        };
+        let (scene, spec) = (self.scene.to_string(), spec("bsdf", "scalar", [32, 24], 1));
+        let (decomposition, strategy) = ("tiles:16x16".to_string(), "serial".to_string());
+        let settings = Settings { scene, spp: 8, spec, decomposition, strategy, threads: 1, ..Settings::default() };
         let setup = Setup::prepare(settings)?;
         let mut fastest = f64::INFINITY;
         let mut operations = 0.0;

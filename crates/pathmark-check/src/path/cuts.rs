@@ -2,9 +2,10 @@
 
 use crate::Trials;
 use crate::estimator::ESTIMATORS;
-use crate::exact::{Bench, arriving_estimators, critical, full_estimators, mean, run, with_kernels};
+use crate::exact::{Bench, arriving_estimators, critical, full_estimators, mean, with_kernels};
 use crate::kernel::Spec;
 use crate::measure::{Record, Settings, Setup, Warning};
+use crate::rendering::{run, spec};
 use crate::scene::load;
 use crate::stage::{diffuse, hollow};
 use std::sync::Arc;
@@ -67,16 +68,9 @@ pub(super) fn clamp(trials: &mut Trials) {
             if !arrives || (clamp.is_some_and(|clamp| clamp.starts_with("recursion")) && !is_one_path) {
                 continue;
             }
-            let spec = Spec {
-                width: side,
-                height: side,
-                estimator: estimator.into(),
-                kernel: kernel.into(),
-                roulette: Some("albedo:0".into()),
-                clamp: clamp.map(str::to_string),
-                ..Spec::default()
-            };
-            let outcome = run(&scene, Settings { spp: 4, spec, ..Settings::default() });
+            let (roulette, own) = (Some("albedo:0".to_string()), clamp.map(str::to_string));
+            let spec = Spec { roulette, clamp: own, ..spec(estimator, kernel, [side; 2], 1) };
+            let outcome = run(&scene, spec, 4);
             let exact =
                 clamp.map_or(1.0, |clamp| if clamp.ends_with(":2") { 0.878_423_345_4 } else { 0.651_321_559_9 });
             let what = format!("{}, {estimator}, {kernel}", clamp.unwrap_or("none"));

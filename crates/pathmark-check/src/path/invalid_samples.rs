@@ -4,13 +4,13 @@ use crate::Trials;
 use crate::effect::EffectSet;
 use crate::estimator::{AnyEstimator, ESTIMATORS, Estimator, Options, Probe, any_estimator};
 use crate::film::DECOMPOSITIONS;
-use crate::kernel::{KERNELS, Spec};
+use crate::kernel::KERNELS;
 use crate::math::{Ray, Rgb};
 use crate::measure::{InvalidSample, Outcome, Settings, Setup};
+use crate::rendering::{run, spec};
 use crate::sampling::{SampleKey, Sampler};
 use crate::scene::{Scene, load};
 use crate::strategy::STRATEGIES;
-use std::sync::Arc;
 
 const WIDTH: u32 = 16;
 const HEIGHT: u32 = 12;
@@ -60,17 +60,9 @@ pub(super) fn injected(trials: &mut Trials) {
         .map(|(y, x, sample)| InvalidSample { y, x, sample })
         .collect();
     let settings = |estimator: &str, strategy: &str, decomposition: &str| {
-        let spec = Spec { width: WIDTH, height: HEIGHT, seed: 3, estimator: estimator.to_string(), ..Spec::default() };
+        let (spec, scene) = (spec(estimator, KERNELS[0].name, [WIDTH, HEIGHT], 3), "cornell".to_string());
         let (strategy, decomposition) = (strategy.to_string(), decomposition.to_string());
-        Settings {
-            scene: "cornell".to_string(),
-            spp: SPP,
-            spec,
-            threads: 2,
-            strategy,
-            decomposition,
-            ..Settings::default()
-        }
+        Settings { scene, spp: SPP, spec, threads: 2, strategy, decomposition, ..Settings::default() }
     };
     let mut look = |name: String, settings: &Settings, bad: f64| {
         let outcome = render(settings.clone(), bad);
@@ -119,10 +111,7 @@ fn spoilt_lamp(kernel: &str, trials: &mut Trials) {
     let mut scene = load("cornell").expect("a shipped scene");
     let lamp = scene.objects.iter_mut().find(|object| object.emission != Rgb::BLACK).expect("a lamp");
     lamp.emission = Rgb { r: f64::NAN, g: f64::NAN, b: f64::NAN };
-    let spec =
-        Spec { width: WIDTH, height: HEIGHT, estimator: "bsdf".into(), kernel: kernel.into(), ..Spec::default() };
-    let settings = Settings { spp: SPP, spec, ..Settings::default() };
-    let outcome = Setup::for_scene(Arc::new(scene), settings).expect("a run").run(None).expect("an image");
+    let outcome = run(&scene, spec("bsdf", kernel, [WIDTH, HEIGHT], 1), SPP);
     let some = (1..outcome.counts.paths).contains(&outcome.counts.invalid);
     trials.holds(format!("{kernel}: a spoilt lamp"), "some of the samples", outcome.counts.invalid, some);
     let black = outcome.film.pixels().iter().all(|pixel| pixel.sum == [0.0; 3]);

@@ -3,18 +3,19 @@
 use crate::Trials;
 use crate::analytic::corridors::corridor;
 use crate::estimator::MAX_BOUNCES;
-use crate::exact::{arriving_estimators, full_estimators, run, with_kernels};
+use crate::exact::{arriving_estimators, full_estimators, with_kernels};
 use crate::film::{Bounds, Piece, PixelSum, TileBuffer};
 use crate::kernel::{self, Counts, Spec};
-use crate::measure::{Settings, Warning};
+use crate::measure::Warning;
+use crate::rendering::{run, spec};
 use crate::scene::Scene;
 use crate::stage::{diffuse, hollow, mirror};
 use std::sync::Arc;
 use std::thread;
 
-/// One pixel's samples, rendered in a thread with a small stack; the default in Rust is 2 MiB.
-fn pixel(scene: &Scene, spec: Spec, spp: u32) -> (PixelSum, Counts) {
-    let kernel = kernel::build(&Arc::new(scene.clone()), &Spec { width: 1, height: 1, ..spec }).expect("a kernel");
+/// The samples of an image of one pixel, rendered in a thread with a small stack; the default in Rust is 2 MiB.
+fn pixel(scene: &Scene, spec: &Spec, spp: u32) -> (PixelSum, Counts) {
+    let kernel = kernel::build(&Arc::new(scene.clone()), spec).expect("a kernel");
     let render = move || {
         let bounds = Bounds { x0: 0, y0: 0, x1: 1, y1: 1 };
         let mut buffer = TileBuffer::new(bounds);
@@ -31,9 +32,7 @@ pub(super) fn endless(trials: &mut Trials) {
         for emission in [0.0, 1.0] {
             let scene = hollow(&material, [emission; 3]);
             for (estimator, kernel) in with_kernels(full_estimators()) {
-                let spec =
-                    Spec { width: 1, height: 1, estimator: estimator.into(), kernel: kernel.into(), ..Spec::default() };
-                let outcome = run(&scene, Settings { spp: 4, spec, threads: 1, ..Settings::default() });
+                let outcome = run(&scene, spec(estimator, kernel, [1; 2], 1), 4);
                 let counts = outcome.counts;
                 let what = format!("{name}, Le {emission}, {estimator}, {kernel}");
                 let found = (counts.paths, counts.truncated, counts.escaped, counts.invalid);
@@ -56,8 +55,7 @@ pub(super) fn ten_thousand(trials: &mut Trials) {
     let scene = corridor(10_000, 0.999);
     for (estimator, kernel) in with_kernels(full_estimators()) {
         let roulette = Some("never".to_string());
-        let spec = Spec { estimator: estimator.into(), kernel: kernel.into(), roulette, ..Spec::default() };
-        let (sum, counts) = pixel(&scene, spec, 8);
+        let (sum, counts) = pixel(&scene, &Spec { roulette, ..spec(estimator, kernel, [1; 2], 1) }, 8);
         let what = format!("{estimator}, {kernel}");
         let exact = 4.517_334_597_704_865e-5;
         trials.close(&what, exact, sum.mean()[0], 1e-11 * exact);
@@ -66,8 +64,7 @@ pub(super) fn ten_thousand(trials: &mut Trials) {
     // Roulette ends these paths; some of them are very long.
     let furnace = hollow(&diffuse(0.999), [1.0; 3]);
     for (estimator, kernel) in with_kernels(full_estimators()) {
-        let spec = Spec { estimator: estimator.into(), kernel: kernel.into(), ..Spec::default() };
-        let (_, counts) = pixel(&furnace, spec, 200);
+        let (_, counts) = pixel(&furnace, &spec(estimator, kernel, [1; 2], 1), 200);
         let is_long = counts.rays > 300 * counts.paths && counts.escaped + counts.invalid + counts.truncated == 0;
         trials.holds(format!("a furnace, {estimator}, {kernel}"), "long paths", format_args!("{counts:?}"), is_long);
     }
@@ -81,16 +78,16 @@ pub(super) fn underflow(trials: &mut Trials) {
     for (estimator, kernel) in with_kernels(arriving_estimators()) {
         let what = format!("{estimator}, {kernel}");
         let roulette = Some("never".to_string());
-        let spec = Spec { estimator: estimator.into(), kernel: kernel.into(), roulette, ..Spec::default() };
+        let spec = Spec { roulette, ..spec(estimator, kernel, [1; 2], 1) };
         for (albedo, rays, radiance) in [(0.5, 1023, 2.0), (0.9, 6724, 10.0)] {
-            let (sum, counts) = pixel(&hollow(&mirror(albedo), [1.0; 3]), spec.clone(), 4);
+            let (sum, counts) = pixel(&hollow(&mirror(albedo), [1.0; 3]), &spec, 4);
             let found = (counts.rays, counts.truncated);
             trials.same(format!("{albedo}, {what}: rays, cut"), (4 * rays, 0), found);
             trials.close(format!("{albedo}, {what}: radiance"), radiance, sum.mean()[0], 1e-12);
         }
 
         let three = hollow("{ mirror = { albedo = [1.0, 0.999, 0.9] } }", [0.0, 1.0, 1.0]);
-        let (sum, counts) = pixel(&three, spec, 4);
+        let (sum, counts) = pixel(&three, &spec, 4);
         let [red, green, blue] = sum.mean();
         trials.close(format!("no light, {what}"), 0.0, red, 0.0);
         trials.close(format!("0.999, {what}"), 1000.0, green, 1e-8);

@@ -7,35 +7,19 @@ use crate::film::{Assembly, Bounds, DECOMPOSITIONS, SAMPLE_BLOCK, SampleSum, Til
 use crate::kernel::{KERNELS, Spec};
 use crate::math::{Rgb, sin_cos_turns};
 use crate::measure::Settings;
+use crate::random::Random;
+use crate::rendering::{self, spec};
 use crate::sampling::SAMPLERS;
 use crate::scene::load;
 use crate::strategy::{STRATEGIES, Workers};
-use rand::Rng;
-use rand_pcg::Pcg64Mcg;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
-
-fn uniform(random: &mut Pcg64Mcg) -> f64 {
-    ((random.next_u64() >> 11) as f64 + 0.5) / 9_007_199_254_740_992.0
-}
-
-/// Exponential of a normal variate with standard deviation 3, by G. E. P. Box and M. E. Muller (1958).
-fn log_normal(random: &mut Pcg64Mcg) -> f64 {
-    let radius = (-2.0 * libm::log(uniform(random))).sqrt();
-    libm::exp(3.0 * radius * libm::cos(TAU * uniform(random)))
-}
-
-fn shuffle<T>(values: &mut [T], random: &mut Pcg64Mcg) {
-    for last in (1..values.len()).rev() {
-        values.swap(last, (random.next_u64() % (last as u64 + 1)) as usize);
-    }
-}
 
 /// 4096 log-normal samples in 1000 orders: running sums give dozens of results, pieces of a film give one.
 pub(super) fn orders(trials: &mut Trials) {
     const BOUNDS: Bounds = Bounds { x0: 0, y0: 0, x1: 1, y1: 1 };
-    let mut random = Pcg64Mcg::new(14);
-    let values: Vec<f64> = (0..4096).map(|_| log_normal(&mut random)).collect();
+    let mut random = Random::new(14);
+    let values: Vec<f64> = (0..4096).map(|_| libm::exp(random.normal(3.0))).collect();
     let piece = |start: u32| {
         let mut sum = SampleSum::default();
         values[start as usize..(start + SAMPLE_BLOCK) as usize].iter().for_each(|value| sum.add(Rgb::WHITE * *value));
@@ -48,8 +32,8 @@ pub(super) fn orders(trials: &mut Trials) {
     let (mut fixed, mut running) = (BTreeSet::new(), BTreeSet::new());
     let count = trials.times(200, 1000);
     for _ in 0..count {
-        shuffle(&mut pieces, &mut random);
-        shuffle(&mut shuffled, &mut random);
+        random.shuffle(&mut pieces);
+        random.shuffle(&mut shuffled);
         let mut assembly = Assembly::new(1, 1, 0..4096).expect("memory for a pixel");
         for (samples, tile) in &pieces {
             assembly.add(samples, tile.clone());
@@ -68,31 +52,37 @@ pub(super) fn orders(trials: &mut Trials) {
     images(trials);
 }
 
-/// The image is the same for every strategy, decomposition and number of threads.
+/// The image of each sampler is the same for every strategy, decomposition and number of threads.
 fn images(trials: &mut Trials) {
     let scene = load("cornell").expect("a shipped scene");
     // Three subtrees of 32, 16 and 4 samples, so that a wrong order of addition shows.
-    let small = |kernel: &str| {
-        let spec = Spec { width: 9, height: 7, seed: 7, kernel: kernel.to_string(), ..Spec::default() };
+    let small = |kernel: &str, sampler: &str| {
+        let spec = Spec { sampler: sampler.to_string(), ..spec("smallpt", kernel, [9, 7], 7) };
         Settings { spp: 52, spec, decomposition: "rows".into(), strategy: "serial".into(), ..Settings::default() }
     };
     let examples = DECOMPOSITIONS.iter().map(|entry| entry.example);
     let decompositions: Vec<&str> = examples.chain(["tiles:1x1", "tiles:5x3:spiral", "samples:16:4x4"]).collect();
+    let samplers = || SAMPLERS.iter().filter(|entry| entry.deterministic).map(|entry| entry.name);
+    let pairs = || samplers().flat_map(|sampler| decompositions.iter().map(move |own| (*own, sampler)));
     // A quick run takes two of them in turn.
-    let few = trials.times(2, decompositions.len() as u64) as usize;
-    let mut turns = decompositions.iter().cycle();
+    let few = trials.times(2, pairs().count() as u64) as usize;
+    let mut turns = pairs().cycle();
     for kernel in KERNELS {
         let checksum = |settings| run(&scene, settings).checksum;
-        let expected = checksum(small(kernel.name));
+        let of = |sampler| (sampler, checksum(small(kernel.name, sampler)));
+        let expected: BTreeMap<&str, Option<String>> = samplers().map(of).collect();
+        let told = format!("{expected:?}");
+        trials.holds(format!("{}, serial", kernel.name), "checksums", told, expected.values().all(Option::is_some));
         for strategy in STRATEGIES {
             // One thread is enough for strategies that ignore the number of threads.
             let threads: &[usize] = if strategy.workers == Workers::Threads { &[1, 2, 8] } else { &[1] };
             let mut others = Vec::new();
             for &threads in threads {
-                for decomposition in turns.by_ref().take(few) {
+                for (decomposition, sampler) in turns.by_ref().take(few) {
                     let (strategy, decomposition) = (strategy.name.to_string(), decomposition.to_string());
-                    let what = format!("{decomposition} on {threads}");
-                    if checksum(Settings { decomposition, strategy, threads, ..small(kernel.name) }) != expected {
+                    let what = format!("{decomposition} by {sampler} on {threads}");
+                    let settings = Settings { decomposition, strategy, threads, ..small(kernel.name, sampler) };
+                    if checksum(settings) != expected[sampler] {
                         others.push(what);
                     }
                 }
@@ -110,11 +100,9 @@ pub(super) fn bits(trials: &mut Trials) {
     let scene = load("cornell").expect("a shipped scene");
     let by_bsdf = SAMPLERS.iter().filter_map(|entry| Some(("bsdf", entry.name, entry.checksum?)));
     for (estimator, sampler, expected) in by_bsdf.chain([SMALLPT]) {
-        let (estimator, sampler) = (estimator.to_string(), sampler.to_string());
         let what = format!("cornell, {estimator}, {sampler}");
-        let spec = Spec { width: 96, height: 64, seed: 7, estimator, sampler, ..Spec::default() };
-        let settings = Settings { spp: 8, spec, ..Settings::default() };
-        trials.same(what, Some(expected.to_string()), run(&scene, settings).checksum);
+        let spec = Spec { sampler: sampler.to_string(), ..spec(estimator, KERNELS[0].name, [96, 64], 7) };
+        trials.same(what, Some(expected.to_string()), rendering::run(&scene, spec, 8).checksum);
     }
     own_functions(trials);
 }

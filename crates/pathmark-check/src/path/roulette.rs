@@ -2,11 +2,11 @@
 
 use crate::Trials;
 use crate::estimator::{ESTIMATORS, Options, Roulette, any_estimator};
-use crate::exact::{Bench, arriving_estimators, critical, full_estimators, run, with_kernels};
+use crate::exact::{Bench, arriving_estimators, critical, every_estimator, full_estimators, with_kernels};
 use crate::kernel::Spec;
 use crate::math::{Ray, Vec3};
-use crate::measure::Settings;
-use crate::rendering::Moments;
+use crate::measure::Outcome;
+use crate::rendering::{Moments, run, spec};
 use crate::sampling::{Address, SampleKey, Sampler};
 use crate::scene::Scene;
 use crate::stage::hollow;
@@ -58,22 +58,19 @@ pub(super) fn at_the_chance(trials: &mut Trials) {
     }
 }
 
-/// One ray per path, and exactly the emission of the surface.
+/// One ray per path, and exactly the emission of the surface, also by estimators that aim at light or have no roulette.
 pub(super) fn black(trials: &mut Trials) {
     let scene = hollow(&diffuse([0.0; 3]), [3.0, 0.0, 0.5]);
-    for (estimator, kernel) in with_kernels(full_estimators()) {
-        for rule in ["albedo:5", "albedo:0", "throughput:0", "never"] {
-            let roulette = Some(rule.to_string());
-            let (estimator, kernel) = (estimator.to_string(), kernel.to_string());
-            let what = format!("{rule}, {estimator}, {kernel}");
-            let arrives = arriving_estimators().any(|name| name == estimator);
-            let spec = Spec { width: 8, height: 6, estimator, kernel, roulette, ..Spec::default() };
-            let outcome = run(&scene, Settings { spp: 4, spec, ..Settings::default() });
-            let others = outcome.film.pixels().iter().filter(|pixel| pixel.mean() != [3.0, 0.0, 0.5]).count();
+    for (estimator, kernel) in with_kernels(every_estimator()) {
+        let rules = [None, Some("albedo:5"), Some("albedo:0"), Some("throughput:0"), Some("never")];
+        let has_roulette = full_estimators().any(|name| name == estimator);
+        for rule in rules.into_iter().filter(|rule| has_roulette || rule.is_none()) {
+            let what = format!("{}, {estimator}, {kernel}", rule.unwrap_or("its own rule"));
+            let spec = Spec { roulette: rule.map(str::to_string), ..spec(estimator, kernel, [8, 6], 1) };
+            let Outcome { film, counts, .. } = run(&scene, spec, 4);
+            let others = film.pixels().iter().filter(|pixel| pixel.mean() != [3.0, 0.0, 0.5]).count();
             trials.never(&what, "other pixels", others as u64, 48);
-            if arrives {
-                trials.same(format!("{what}: rays"), outcome.counts.paths, outcome.counts.rays);
-            }
+            trials.same(format!("{what}: rays, invalid"), (counts.paths, 0), (counts.rays, counts.invalid));
         }
     }
 }
@@ -112,11 +109,9 @@ pub(super) fn spread(trials: &mut Trials) {
         for (rule, weight) in [("albedo:0", 1.0), ("albedo:5", rho5)] {
             for (estimator, kernel) in with_kernels(arriving_estimators()) {
                 let what = format!("rho {rho}, {rule}, {estimator}, {kernel}");
-                let (estimator, kernel) = (estimator.to_string(), kernel.to_string());
                 let roulette = Some(rule.to_string());
-                let spec = Spec { width: 32, height: 32, seed: 22, estimator, kernel, roulette, ..Spec::default() };
-                let film = run(&scene, Settings { spp, spec, ..Settings::default() }).film;
-                let Moments { mean, variance, n } = Moments::of(&film, 0);
+                let spec = Spec { roulette, ..spec(estimator, kernel, [32; 2], 22) };
+                let Moments { mean, variance, n } = Moments::of(&run(&scene, spec, spp).film, 0);
                 let exact = weight * weight * deviation * deviation;
                 let z_mean = (mean - 1.0 / (1.0 - rho)) / (exact / n).sqrt();
                 let z_variance = (variance / exact - 1.0) / ((8.0 + (1.0 - rho) * (1.0 - rho) / rho) / n).sqrt();

@@ -19,16 +19,11 @@ pub(super) const SECTION: Section = Section {
     cases: &[
         case("R01", "rows of an image share no stream, as smallpt's rows do", rows::rows),
         case("R02", "rows do not differ by a constant at every draw, as smallpt's do", rows::differences),
-        case(
-            "R03",
-            "neighbours do not differ by a constant, as those of a generator seeded by the pixel do",
-            rows::neighbours,
-        ),
+        case("R03", "neighbours differ by no constant, as they would with the pixel as the seed", rows::neighbours),
         case("R04", "8 draws of 786 432 pixels, up to 4 seeds: chi-square, two-sided, and lags", pixels::across),
         case("R05", "no key of pixels and seeds makes a generator of zeros", keys::zeros),
         case("R06", "no two addresses share their numbers; the mix is a bijection", keys::collisions),
         case("R07", "noise of seeds s and s + 2^k at all lags, draws and images", seeds::seeds),
-        case("R08", "one checksum for every strategy and number of threads", threads::one_checksum),
         case("R12", "generators that threads share: flagged, fair and never the same for two threads", threads::shared),
         case("R09", "0 and 1 - 2^-53 through every camera, material, light and estimator", extremes::consumers),
         case("R11", "free paths in fog for 0, 1 - 2^-53 and all between", extremes::free_paths),

@@ -4,7 +4,7 @@ use super::unguarded::seed_plus_pixel;
 use super::{first, keyed, worst};
 use crate::analysis::randomness::fourier::{Square, correlations};
 use crate::kernel::{KERNELS, Spec};
-use crate::rendering::run;
+use crate::rendering::{run, spec};
 use crate::sampling::{Purpose, REFERENCE_SEEDS};
 use crate::scene::load;
 use crate::{Trials, critical};
@@ -51,14 +51,7 @@ fn images(trials: &mut Trials) {
     for kernel in KERNELS {
         for (name, _) in keyed() {
             let image = |seed: u64| -> Vec<f64> {
-                let spec = Spec {
-                    width: side as u32,
-                    height: side as u32,
-                    seed,
-                    kernel: kernel.name.into(),
-                    sampler: name.into(),
-                    ..Spec::default()
-                };
+                let spec = Spec { sampler: name.into(), ..spec("smallpt", kernel.name, [side as u32; 2], seed) };
                 // Clamped to 1 as on a display, so that no single pixel dominates the noise.
                 run(&scene, spec, 4).film.image().pixels.iter().map(|pixel| pixel[1].min(1.0)).collect()
             };

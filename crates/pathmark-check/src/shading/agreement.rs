@@ -2,7 +2,7 @@
 
 use crate::exact::full_estimators;
 use crate::kernel::KERNELS;
-use crate::rendering::{Moments, difference, exact, render};
+use crate::rendering::{Moments, difference, exact, run, spec};
 use crate::scene::Scene;
 use crate::stage::{camera, diffuse, object, plane, scene, sphere};
 use crate::{Trials, critical};
@@ -29,7 +29,7 @@ fn agree(trials: &mut Trials, spots: &[Spot], spp: (u64, u64), widest: f64) {
         let found: Vec<(String, Moments)> = (40..)
             .zip(&ways)
             .map(|(seed, (kernel, estimator))| {
-                let outcome = render(scene, kernel, estimator, (SIDE, SIDE), spp, seed);
+                let outcome = run(scene, spec(estimator, kernel, [SIDE; 2], seed), spp);
                 trials.same(format!("{name}, {kernel}, {estimator}: invalid samples"), &0, &outcome.counts.invalid);
                 (format!("{kernel}, {estimator}"), Moments::of(&outcome.film, 0))
             })

@@ -50,16 +50,19 @@ fn reciprocity(trials: &mut Trials) {
     trials.at_least("kd-ks: largest f(a, b)/f(b, a)", 1.3, widest);
 }
 
-const COSINES: [f64; 6] = [1.0, 0.75, 0.5, 0.25, 0.1, 0.05];
+/// Cosines of the viewing angle.
+pub(crate) const COSINES: [f64; 6] = [1.0, 0.75, 0.5, 0.25, 0.1, 0.05];
 
-/// Roughness, and the albedo of facets with F = 1 at each cosine: quadrature with mpmath to 1e-6.
-const TABLE: [(f64, [f64; 6]); 6] = [
+/// Roughness, and the albedo of facets with F = 1 at each cosine: single scattering by GGX with height-correlated
+/// shadowing, by quadrature with mpmath to 1e-6. The last row at normal incidence is 1 - ln 2.
+pub(crate) const ALBEDO: [(f64, [f64; 6]); 7] = [
+    (0.01, [0.999_899, 0.999_858, 0.999_742, 0.999_092, 0.994_124, 0.976_208]),
     (0.05, [0.997_296, 0.996_138, 0.992_716, 0.974_512, 0.911_347, 0.889_894]),
     (0.1, [0.988_304, 0.983_144, 0.969_205, 0.921_623, 0.883_455, 0.911_763]),
     (0.25, [0.915_812, 0.891_533, 0.857_263, 0.840_082, 0.891_622, 0.933_132]),
     (0.5, [0.687_849, 0.682_083, 0.698_251, 0.765_203, 0.860_105, 0.912_548]),
     (0.75, [0.463_917, 0.501_411, 0.564_623, 0.680_248, 0.810_714, 0.880_610]),
-    (1.0, [0.306_853, 0.364_527, 0.450_694, 0.597_641, 0.760_211, 0.847_774]),
+    (1.0, [0.306_852_819_440_054_7, 0.364_527, 0.450_694, 0.597_641, 0.760_211, 0.847_774]),
 ];
 
 /// The fractional parts of multiples of these fill the square evenly: powers of the reciprocal root of x³ = x + 1
@@ -75,7 +78,7 @@ fn white(alpha: f64) -> Material {
 fn albedos_of_the_table(trials: &mut Trials) {
     let n = trials.times(50_000, 1_000_000);
     let quadrature = |alpha: f64, cos: f64| white(alpha).albedo_at(cos).map_or(f64::NAN, |albedo| albedo.r);
-    for (alpha, row) in TABLE {
+    for (alpha, row) in ALBEDO {
         let white = white(alpha);
         for (cos, expected) in COSINES.into_iter().zip(row) {
             let mut sum = 0.0;
@@ -88,7 +91,6 @@ fn albedos_of_the_table(trials: &mut Trials) {
             trials.close(format!("alpha {alpha}, cos {cos}: quadrature"), expected, quadrature(alpha, cos), 1e-4);
         }
     }
-    trials.close("alpha 1, cos 1", 0.306_852_819_440_054_7, quadrature(1.0, 1.0), 1e-4);
     for (alpha, expected) in [(1e-4, 0.999_999_989_998_664_1), (1e-3, 0.999_998_998_648_7), (0.01, 0.999_898_556_406)] {
         trials.close(format!("alpha {alpha}, cos 1: quadrature"), expected, quadrature(alpha, 1.0), 1e-4);
     }

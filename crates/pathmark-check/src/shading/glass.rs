@@ -6,7 +6,7 @@ use crate::kernel::KERNELS;
 use crate::material::{Dielectric, Fresnel, Material};
 use crate::materials::{every_material, towards};
 use crate::math::{Rgb, Vec3, fresnel_dielectric};
-use crate::rendering::{Moments, render};
+use crate::rendering::{Moments, run, spec};
 use crate::scene::{AllEffects, load};
 use crate::{Trials, critical};
 
@@ -101,7 +101,7 @@ pub(super) fn inside_the_glass(trials: &mut Trials) {
     let spp = trials.times(16, 512) as u32;
     for kernel in KERNELS {
         for estimator in estimators() {
-            let outcome = render(&scene, kernel.name, estimator, (64, 48), spp, 21);
+            let outcome = run(&scene, spec(estimator, kernel.name, [64, 48], 21), spp);
             let counts = outcome.counts;
             trials.same(
                 format!("{}, {estimator}: escaped, truncated, invalid", kernel.name),

@@ -3,7 +3,7 @@
 use crate::Trials;
 use crate::estimator::ESTIMATORS;
 use crate::kernel::KERNELS;
-use crate::rendering::{Moments, render};
+use crate::rendering::{Moments, run, spec};
 use crate::scene::load;
 use crate::stage::{camera, diffuse, object, plane, scene, sphere};
 
@@ -27,7 +27,7 @@ pub(super) fn hardly_there(trials: &mut Trials) {
         let scene = scene(&[parts.concat(), things.concat()]);
         for kernel in KERNELS {
             for entry in ESTIMATORS {
-                let outcome = render(&scene, kernel.name, entry.name, (16, 16), spp, 50);
+                let outcome = run(&scene, spec(entry.name, kernel.name, [16; 2], 50), spp);
                 let variant = format!("{name}, {}, {}", kernel.name, entry.name);
                 trials.same(format!("{variant}: invalid samples"), &0, &outcome.counts.invalid);
                 let brightest = (0..3).map(|channel| Moments::of(&outcome.film, channel).mean).fold(0.0, f64::max);

@@ -1,7 +1,7 @@
 //! Cases about frames, Fresnel, microfacets and lights.
 
 mod agreement;
-mod balance;
+pub(crate) mod balance;
 mod cones;
 mod degenerate;
 mod directions;
@@ -37,11 +37,7 @@ pub(super) const SECTION: Section = Section {
         case("H23", "roughness 0 against 1e-4, the smallest that is rough", smooth::roughness_zero),
         case("H29", "mirrors down to grazing angles: F alone and no cosine", smooth::grazing),
         case("H24", "the second report's guards, put back: the furnace must reject them", report_b::guards),
-        case(
-            "H28",
-            "the second report's body under facets gives back no more than arrives",
-            report_b::no_light_is_made,
-        ),
+        case("H28", "the second report's body under facets never makes light", report_b::no_light_is_made),
         case("H25", "directions longer than 1 by a rounding, along the surface and below it", degenerate::beyond),
         case("H27", "opposite directions and grazing ones: half vectors of length 0", degenerate::opposite),
         case("H26", "reciprocity of pairs of directions, and albedos against a table", balance::balance),
@@ -52,15 +48,7 @@ pub(super) const SECTION: Section = Section {
         case("H34", "shares of two ways of finding light: they sum to 1", shares::shares),
         case("H35", "estimators with a light of area 1e-6 and with one that fills the hemisphere", agreement::lights),
         case("H36", "an emitter seen directly, in a mirror and through glass: counted once", agreement::counted_once),
-        case(
-            "H37",
-            "lights below the horizon, edge on, inside of what is opaque, dark, and 100 000 of them",
-            lights::hardly_there,
-        ),
-        case(
-            "G7",
-            "chi-square of every material's directions, two-sided, and the integral of their density",
-            directions::every_sampler,
-        ),
+        case("H37", "lights below the horizon, edge on, enclosed, dark, and 100 000 of them", lights::hardly_there),
+        case("G7", "directions of every material: chi-square, and the density's integral", directions::every_sampler),
     ],
 };

@@ -7,7 +7,7 @@ use crate::material::Density;
 use crate::materials::{every_material, towards};
 use crate::math::{Rgb, Vec3, fresnel_dielectric};
 use crate::refusals::{material, refused};
-use crate::rendering::{Moments, difference, render};
+use crate::rendering::{Moments, difference, run, spec};
 use crate::scene::AllEffects;
 use crate::stage::{camera_above, diffuse, object, scene, sphere};
 use crate::{Trials, critical};
@@ -64,8 +64,9 @@ fn continuity(trials: &mut Trials) {
     let limit = critical(KERNELS.len() * estimators().count());
     for kernel in KERNELS {
         for estimator in estimators() {
-            let [rough, smooth] = [(&rough, 5), (&smooth, 6)]
-                .map(|(scene, seed)| Moments::of(&render(scene, kernel.name, estimator, (48, 48), spp, seed).film, 0));
+            let [rough, smooth] = [(&rough, 5), (&smooth, 6)].map(|(scene, seed)| {
+                Moments::of(&run(scene, spec(estimator, kernel.name, [48; 2], seed), spp).film, 0)
+            });
             let variant = format!("{}, {estimator}: image of 1e-4 and of 0", kernel.name);
             trials.at_most(format!("{variant}: relative error"), 0.01, smooth.error() / smooth.mean);
             trials.deviates_below(variant, limit, difference(&rough, &smooth));

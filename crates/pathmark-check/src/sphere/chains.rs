@@ -1,41 +1,10 @@
-//! Paths that end at the first vertex, and paths that never end.
+//! Paths that never end.
 
 use super::short_ways::scatter;
 use crate::Trials;
 use crate::bare_scene::{intersect, searches};
-use crate::estimator::ESTIMATORS;
-use crate::kernel::Spec;
 use crate::math::{Ray, Vec3, dot};
-use crate::rendering::{by_kernel, try_render};
-use crate::stage::{ANY_CAMERA, MIRROR, ball, named, try_scene};
-use std::sync::Arc;
-
-/// A black room that glows: its radiance is exactly 1, and each path needs one ray only.
-pub(super) fn black_walls(trials: &mut Trials) {
-    let room = named(
-        "room",
-        "{ sphere = { center = [0.0, 0.0, 0.0], radius = 9.0 } }",
-        "{ diffuse = { albedo = [0.0, 0.0, 0.0] } }",
-        1.0,
-    );
-    let scene = Arc::new(try_scene(&[ANY_CAMERA.to_string(), room]).expect("a right scene"));
-    for estimator in ESTIMATORS {
-        let rules = [None, Some("albedo:0"), Some("throughput:0")].map(|rule| rule.map(ToString::to_string));
-        for roulette in rules.into_iter().filter(|rule| rule.is_none() || estimator.roulette.is_some()) {
-            let spec = Spec { width: 8, height: 6, estimator: estimator.name.into(), roulette, ..Spec::default() };
-            for spec in by_kernel(&spec) {
-                let Some(outcome) = try_render(trials, &scene, spec.clone(), 4) else { continue };
-                let (counts, spp) = (outcome.counts, f64::from(outcome.spp));
-                let are_one = outcome.film.pixels().iter().all(|pixel| pixel.sum == [spp; 3]);
-                let rule = spec.roulette.as_deref().unwrap_or("its own rule");
-                let variant = format!("{}, {}, roulette by {rule}", spec.estimator, spec.kernel);
-                let found = format!("{} rays for {} paths, {} invalid", counts.rays, counts.paths, counts.invalid);
-                let told = "one ray a path, every pixel 1";
-                trials.holds(variant, told, found, counts.rays == counts.paths && counts.invalid == 0 && are_one);
-            }
-        }
-    }
-}
+use crate::stage::{ANY_CAMERA, MIRROR, ball, try_scene};
 
 /// Without renormalising, |d| must stay 1 within 1e-12. With it, as in paths, every chord is as long as the first: 2 r
 /// cos.

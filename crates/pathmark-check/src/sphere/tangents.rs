@@ -33,6 +33,7 @@ pub(super) fn from_the_centre(trials: &mut Trials) {
     }
 }
 
+/// The formulas promise nothing for a direction whose square overflows or underflows; they still find no wrong hit.
 pub(super) fn too_long(trials: &mut Trials) {
     let direction = [1e200, 0.0, 0.0];
     same(trials, BESIDE, direction, None);

@@ -5,20 +5,20 @@ use super::references::slope;
 use crate::Trials;
 use crate::analysis::z_test::two_sided_p;
 use crate::estimator;
-use crate::exact::{critical, run};
+use crate::exact::critical;
 use crate::experiment::{Definition, experiments, reference_seed};
 use crate::film::Film;
 use crate::image_io::Image;
-use crate::kernel::Spec;
+use crate::kernel::{KERNELS, Spec};
 use crate::lab::Lab;
-use crate::measure::{LARGEST_SEED, Settings};
+use crate::measure::LARGEST_SEED;
 use crate::metric::{self, bias_squared};
+use crate::rendering::{run, spec};
 use crate::scene::load;
 
 fn film(seed: u64, estimator: &str, max_depth: Option<u16>, spp: u32) -> Film {
     let scene = load("cornell").expect("a shipped scene");
-    let spec = Spec { width: 32, height: 24, seed, estimator: estimator.to_string(), max_depth, ..Spec::default() };
-    run(&scene, Settings { spp, spec, ..Settings::default() }).film
+    run(&scene, Spec { max_depth, ..spec(estimator, KERNELS[0].name, [32, 24], seed) }, spp).film
 }
 
 /// Score of the correlation of two images' noise, against a correlation of 0. The noise of each pixel is its mean

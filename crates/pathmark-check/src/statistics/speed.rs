@@ -7,10 +7,9 @@ use crate::analysis::speedup::{
     Cause, Evidence, Oddity, cause, efficiency, is_superlinear, oddity, serial_fraction, speedup,
 };
 use crate::analysis::{Estimate, Interval};
-use crate::exact::run;
 use crate::film::Film;
-use crate::kernel::Spec;
-use crate::measure::Settings;
+use crate::kernel::KERNELS;
+use crate::rendering::{run, spec};
 use crate::scene::Scene;
 use crate::stage::{camera, diffuse, object, plane, scene, sphere};
 
@@ -53,10 +52,7 @@ pub(super) fn price(trials: &mut Trials) {
     trials.close("efficiency", 1.0 / (variance * seconds), found, 1e-3 / (variance * seconds));
 
     let scene = half_lit();
-    let render = |seed, spp| {
-        let spec = Spec { width: 64, height: 64, seed, estimator: "bsdf".to_string(), ..Spec::default() };
-        squared_error(&run(&scene, Settings { spp, spec, ..Settings::default() }).film)
-    };
+    let render = |seed, spp| squared_error(&run(&scene, spec("bsdf", KERNELS[0].name, [64; 2], seed), spp).film);
     let curves: Vec<Curve> =
         (1..=5).map(|seed| [4, 8, 16].map(|spp| (f64::from(spp), render(seed, spp))).to_vec()).collect();
     for goal in [0.03, 0.015] {

@@ -89,9 +89,7 @@ pub(super) fn one_tree(trials: &mut Trials) {
     let all: Vec<Sphere> =
         (0..2000).map(|_| Sphere { center: in_cube(&mut random), radius: random.scale(-3.0, -1.0) }).collect();
     let mut shuffled = all.clone();
-    for k in (1..shuffled.len()).rev() {
-        shuffled.swap(k, random.below(k + 1));
-    }
+    random.shuffle(&mut shuffled);
     let (all, shuffled) = (scene_of_spheres(all), scene_of_spheres(shuffled));
     let threads = trials.times(8, 64);
     let rays = trials.times(20_000, 1_000_000);

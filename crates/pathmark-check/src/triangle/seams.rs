@@ -4,12 +4,12 @@
 use super::single::{scene, towards};
 use crate::Trials;
 use crate::bare_scene::{intersect, searches};
-use crate::kernel::Spec;
+use crate::kernel::{KERNELS, Spec};
 use crate::math::{Frame, Ray, Vec3};
 use crate::meshes::icosphere;
 use crate::random::Random;
 use crate::rendering::{self, Moments};
-use crate::scene::{Primitive, Primitives, Scene, SurfaceOrigin, Triangle};
+use crate::scene::{ACCELERATORS, Primitive, Primitives, Scene, SurfaceOrigin, Triangle};
 use crate::simd::Precision;
 use crate::stage::{self, GLASS, camera, diffuse, object, plane, quad};
 
@@ -127,17 +127,11 @@ fn under_a_sky(triangles: &[Triangle], target: Vec3, from: Vec3) -> Scene {
 
 /// Specs for both precisions and every accelerator.
 fn specs(estimator: &str) -> Vec<Spec> {
-    let accelerators = crate::scene::ACCELERATORS.iter().map(|entry| entry.name.to_string());
-    let spec = Spec { width: 16, height: 16, seed: 19, estimator: estimator.into(), ..Spec::default() };
-    let by_precision = |accelerator: String| {
-        let accelerator = Some(accelerator);
-        Precision::ALL.map(|precision| Spec {
-            precision: precision.name().into(),
-            accelerator: accelerator.clone(),
-            ..spec.clone()
-        })
+    let of = |accelerator: &str, precision: Precision| {
+        let (precision, accelerator) = (precision.name().to_string(), Some(accelerator.to_string()));
+        Spec { precision, accelerator, ..rendering::spec(estimator, KERNELS[0].name, [16; 2], 19) }
     };
-    accelerators.flat_map(by_precision).collect()
+    ACCELERATORS.iter().flat_map(|entry| Precision::ALL.map(|precision| of(entry.name, precision))).collect()
 }
 
 fn told(spec: &Spec) -> String {

@@ -74,10 +74,7 @@ impl Comparisons {
     fn of_entries(entries: &[Compare], definition: &Definition, profile: Profile, cells: &[Cell]) -> Result<Self> {
         let mut pairs: Vec<Comparison> = Vec::new();
         for entry in entries {
-            let located = |error| match error {
-                Error::Input(input) => definition.located(profile, *input),
-                other => other,
-            };
+            let located = |error: Error| error.placed(|input| definition.located(profile, input));
             let goal = entry.goal.as_deref().map(|text| parse_share("goal", &text.replace(' ', ""))).transpose();
             let goal = goal.map_err(located)?;
             let named = |name: &str| entry.what.contains_key(name) || entry.with.contains_key(name);

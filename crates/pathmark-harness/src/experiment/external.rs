@@ -14,7 +14,7 @@
 
 use super::matrix::LARGEST_CELLS;
 use super::{Cell, CellPoint, Definition, Profile, Progress, SceneVersion};
-use crate::error::{Error, InputError, Result};
+use crate::error::{InputError, Result};
 use crate::kernel::Spec;
 use crate::measure::{ImageKey, ScheduleKey, Settings, parse_size};
 use serde::{Deserialize, Serialize};
@@ -107,10 +107,7 @@ impl Definition {
         let scale = self.scale(profile)?;
         let (mut cells, mut places) = (Vec::<Cell>::new(), HashMap::new());
         for external in &self.external {
-            external.check().map_err(|error| match error {
-                Error::Input(input) => self.located(profile, *input),
-                other => other,
-            })?;
+            external.check().map_err(|error| error.placed(|input| self.located(profile, input)))?;
             let scene = self.lab.load_scene(&external.scene)?;
             let spps = scale.numbers("spp").unwrap_or_else(|| external.spp.clone());
             let seeds = scale.numbers("seed").unwrap_or_else(|| external.seed.clone());

@@ -94,10 +94,7 @@ struct Product<'a> {
 
 impl<'a> Product<'a> {
     fn at_field(&self, error: Error) -> Error {
-        match error {
-            Error::Input(input) if input.place.is_none() => self.definition.located(self.profile, *input),
-            other => other,
-        }
+        error.placed(|input| self.definition.located(self.profile, input))
     }
 
     /// The values of an axis as they are written. A profile's values replace the matrix's, except the size, where the

@@ -13,7 +13,6 @@ mod diff;
 mod doctor;
 mod drift;
 mod external;
-mod formula;
 mod grading;
 mod image_bits;
 mod instructions;

@@ -1,13 +1,12 @@
 //! `records.csv`: written row by row, flushed to the disk after each, so that a killed sweep loses at most the row it was writing.
 
-use super::{formula, packed_rows};
+use super::packed_rows;
 use crate::atomic_file;
 use crate::disk::{OnDisk, Step, step};
 use crate::error::{Error, InputError, Result};
 use crate::lock::{self, Sharing};
 use crate::measure::{COLUMNS, Column, Record, SCHEMA};
 use csv::StringRecord;
-use std::borrow::Cow;
 use std::collections::HashSet;
 use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
@@ -275,9 +274,6 @@ impl RecordsFile {
 
 fn row_bytes(record: &Record, header: bool) -> std::io::Result<Vec<u8>> {
     let mut writer = csv::WriterBuilder::new().has_headers(header).from_writer(Vec::new());
-    match formula::as_text(&record.error) {
-        Cow::Borrowed(_) => writer.serialize(record)?,
-        Cow::Owned(error) => writer.serialize(Record { error, ..record.clone() })?,
-    }
+    writer.serialize(record)?;
     writer.into_inner().map_err(csv::IntoInnerError::into_error)
 }

@@ -3,7 +3,6 @@
 use super::baseline::{Baseline, baseline_folder, check_program};
 use super::cell::{trace_file, with_serial_runs};
 use super::comparisons::Comparisons;
-use super::formula;
 use super::instructions;
 use super::object_pixels::check_object;
 use super::pairs::USUAL_PAIRS;
@@ -377,7 +376,6 @@ fn check_names(definition: &Definition, options: &Options, cells: &[Cell]) -> Re
         let problem = "is not UTF-8 text, which the processes of cells require";
         return Err(InputError::new("out", options.out.to_string_lossy(), problem).into());
     }
-    formula::check_names(definition, cells)?;
     for cell in cells {
         if definition.keeps(Keep::Traces) {
             // No repetition number is longer.

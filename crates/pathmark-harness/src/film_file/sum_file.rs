@@ -87,10 +87,8 @@ impl SumFile {
 
     /// Refuses a file whose rest after the header does not have the length of so many images of a width and height.
     fn check_length(&self, path: &Path, body: &Body, (width, height, images): (u32, u32, usize)) -> Result<()> {
-        check_size(width, height).map_err(|error| match error {
-            Error::Input(input) => input.in_file(path.display().to_string(), None).into(),
-            other => other,
-        })?;
+        let in_file = |input: InputError| input.in_file(path.display().to_string(), None).into();
+        check_size(width, height).map_err(|error| error.placed(in_file))?;
         let size = (u64::from(width) * u64::from(height) * PIXEL_BYTES as u64).checked_mul(images as u64);
         if size == Some(body.file.limit()) {
             return Ok(());

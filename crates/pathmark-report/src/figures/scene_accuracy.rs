@@ -1,7 +1,7 @@
 //! Error by scene at the same samples per pixel. It tests report A's claim that scenes without reflections are more
 //! accurate; a control exchanges the materials of one scene.
 
-use crate::analysis::mean::t_interval;
+use crate::analysis::mean::geometric_interval;
 use crate::analysis::rank::spearman;
 use crate::prelude::*;
 
@@ -167,11 +167,7 @@ fn claim(found: &Correlation) -> Block {
 
 /// The ratio of the errors of two scenes, paired by seed: the mean of logarithms.
 fn error_ratio(above: &Accuracy, below: &Accuracy) -> Option<Estimate> {
-    let ratios = above.by_seed.over(&below.by_seed).values();
-    let found = t_interval(&ratios.into_iter().map(libm::log).collect::<Vec<f64>>(), LEVEL)?;
-    let Interval { low, high, level } = found.interval;
-    let interval = Interval::between(libm::exp(low), libm::exp(high), level)?;
-    Some(Estimate { value: libm::exp(found.value), interval })
+    geometric_interval(&above.by_seed.over(&below.by_seed).values(), LEVEL)
 }
 
 fn controlled(scenes: &[Accuracy], control: &Control) -> Option<Block> {

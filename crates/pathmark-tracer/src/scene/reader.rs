@@ -198,12 +198,7 @@ fn add_parts(scene: &mut Scene, parts: Vec<Part>, hash: &mut Fingerprint) -> Res
 
 /// Adds the object's position to an input error of its shape that has no position.
 fn at_object(source: &Source, name: &str, problem: Error) -> Error {
-    match problem {
-        Error::Input(problem) if problem.place.is_none() => {
-            problem.in_file(&source.file, locate(&source.text, "name", name)).into()
-        }
-        other => other,
-    }
+    problem.placed(|problem| problem.in_file(&source.file, locate(&source.text, "name", name)).into())
 }
 
 fn missing(source: &Source, field: &str, problem: &str) -> Error {
@@ -285,11 +280,7 @@ fn base_of(from: &Source, base: &str, depth: usize, own: &[CustomScene]) -> Resu
     if depth == DEEPEST_BASE {
         return Err(error(format!("follows a chain of {DEEPEST_BASE} bases, which may form a circle")).into());
     }
-    let source = source(base, &from.folder, own).map_err(|problem| match problem {
-        Error::Input(problem) if problem.place.is_none() => {
-            Error::from(error(problem.problem).allowed(problem.allowed))
-        }
-        other => other,
-    })?;
+    let source = source(base, &from.folder, own)
+        .map_err(|problem| problem.placed(|problem| error(problem.problem).allowed(problem.allowed).into()))?;
     Ok(draft(&Rc::new(source), depth + 1, own)?.0)
 }
