@@ -104,12 +104,7 @@ fn every_rule_gives_the_image_of_one_process() {
     let serial = ["--threads", "1", "--strategy", "serial", "--decomposition", "tiles:16x16"];
     let expected = alone(&serial);
     for rule in RULES {
-        for count in [2, 3] {
-            together(count, rule, &serial, &expected);
-        }
-        if !rule.starts_with("master-worker") {
-            together(1, rule, &serial, &expected);
-        }
+        together(3, rule, &serial, &expected);
     }
     for rule in ["static-cyclic", "guided", "adaptive-factoring", "master-worker:3"] {
         // More ranks than rows of tiles, and pieces with some of a pixel's samples.
@@ -117,6 +112,9 @@ fn every_rule_gives_the_image_of_one_process() {
         together(5, rule, &threads, &expected);
         let single = ["--threads", "2", "--precision", "f32", "--strategy", "static-blocks"];
         together(2, rule, &single, &alone(&single));
+        if !rule.starts_with("master-worker") {
+            together(1, rule, &serial, &expected);
+        }
     }
     together(8, "dynamic:3", &["--threads", "2", "--strategy", "thread-per-row"], &expected);
 }

@@ -14,8 +14,12 @@ use pathmark::scene::{SCENES, Scene, load};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::sync::Arc;
 
-/// Few pixels with many samples: a z-score is normal only if the sample variance has converged.
-const SIZE: (u32, u32) = (8, 6);
+/// Few pixels with many samples: a z-score is normal only if the sample variance has converged. `PATHMARK_THOROUGH`
+/// doubles them.
+fn size() -> (u32, u32) {
+    if std::env::var_os("PATHMARK_THOROUGH").is_some() { (8, 6) } else { (6, 4) }
+}
+
 const SPP: u32 = 1024;
 const LEVEL: f64 = 1e-3;
 
@@ -24,8 +28,8 @@ const LEVEL: f64 = 1e-3;
 const RARELY_MET: [&str; 3] = ["cornell-small-light", "nightsky", "toy-path-tracer"];
 
 fn film(scene: &Arc<Scene>, (estimator, camera_rays): (&str, Option<u16>), seed: u64) -> Film {
-    let spec =
-        Spec { width: SIZE.0, height: SIZE.1, seed, estimator: estimator.into(), camera_rays, ..Spec::default() };
+    let (width, height) = size();
+    let spec = Spec { width, height, seed, estimator: estimator.into(), camera_rays, ..Spec::default() };
     let settings = Settings {
         spp: SPP,
         spec,
