@@ -43,7 +43,7 @@ impl Sweep<'_> {
         let cells: Vec<&Cell> = self.cells.iter().filter(of_this_program).collect();
         for (program, folder) in builds.into_iter().flatten() {
             progress.begin(&format!("{}, instructions", self.definition.name), cells.len() as u64);
-            let (mut counts, mut limits) = (BTreeMap::new(), Limits::of(self)?);
+            let (mut counts, limits) = (BTreeMap::new(), Limits::of(self)?);
             for (done, cell) in (1..).zip(&cells) {
                 let job = self.job(cell, (0, 0), &folder, &[], None);
                 match count(&job, &program, limits.limit_of_counting(cell)) {

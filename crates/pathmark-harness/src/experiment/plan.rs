@@ -124,7 +124,7 @@ impl<'a> Prices<'a> {
 
 /// The image of these settings at the pilot's size, on one thread, without seed and samples; equal for cells of one
 /// kind.
-pub(super) fn small(settings: &Settings) -> Settings {
+fn small(settings: &Settings) -> Settings {
     let spec = &settings.spec;
     let height = (u64::from(WIDTH) * u64::from(spec.height)).div_ceil(u64::from(spec.width).max(1));
     let spec = Spec { width: WIDTH, height: height.clamp(1, 4 * u64::from(WIDTH)) as u32, seed: 0, ..spec.clone() };

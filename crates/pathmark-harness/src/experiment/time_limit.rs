@@ -3,12 +3,10 @@
 //! A limit applies to a process of a cell: one repetition, with all points of a curve and all ranks. At its limit, the
 //! process and all processes that it started are killed, its rows have failed, and the sweep goes on.
 //!
-//! Without a limit of the user, a cell may take ten times as long as all of its samples on one thread, and at least a
-//! minute. Schedules are left out of this estimate: a cell in which one worker does everything is slow, but not hung. A
-//! pilot measures the time of a sample. It is a process like those of cells, so that it cannot crash or stop the sweep.
+//! Without a limit of the user, a cell may take a millisecond per sample, and at least a minute. That is some hundred
+//! times what samples take on one thread: a cell in which one worker does everything is slow, but not hung.
 
-use super::plan::small;
-use super::{Cell, CellJob, PointJob, Sweep};
+use super::{Cell, Sweep};
 use crate::error::{InputError, Result};
 use crate::lab::Lab;
 use crate::measure::{Settings, available_threads};
@@ -21,11 +19,10 @@ pub const TIMED_OUT: &str = "timed-out";
 
 /// Fewest seconds of a limit that the user has not set.
 const LEAST: Duration = Duration::from_mins(1);
-/// The limit where there is no estimate: the cell is another program, or its pilot gave no time.
-const WITHOUT_ESTIMATE: Duration = Duration::from_hours(1);
-const TIMES: f64 = 10.0;
-/// Seconds that hardly any scene's sample takes. Cells so small that they end in time even then need no estimate.
-const SLOWEST_SAMPLE_S: f64 = 1e-3;
+/// The limit of another program and of a workload, whose samples may take any time.
+const OF_OTHERS: Duration = Duration::from_hours(1);
+/// Hardly any scene's sample takes longer.
+const OF_SAMPLE: Duration = Duration::from_millis(1);
 /// How much longer a process takes under valgrind, which also runs its threads one at a time.
 const COUNTING: u32 = 50;
 
@@ -65,64 +62,33 @@ pub(super) fn timed_out(limit: Option<Duration>) -> String {
 pub(super) struct Limits<'a> {
     lab: &'a Lab,
     set: Option<Timeout>,
-    /// Kinds of images, each with the seconds of a sample on one thread.
-    kinds: Vec<(Settings, Option<f64>)>,
 }
 
 impl<'a> Limits<'a> {
     pub(super) fn of(sweep: &Sweep<'a>) -> Result<Self> {
         let own = sweep.definition.timeout(sweep.options.profile)?;
-        Ok(Self { lab: &sweep.definition.lab, set: sweep.options.timeout.or(own), kinds: Vec::new() })
+        Ok(Self { lab: &sweep.definition.lab, set: sweep.options.timeout.or(own) })
     }
 
-    pub(super) fn limit(&mut self, cell: &Cell) -> Option<Duration> {
+    pub(super) fn limit(&self, cell: &Cell) -> Option<Duration> {
         match self.set {
             Some(Timeout(set)) => set,
             None => Some(self.usual(cell)),
         }
     }
 
-    pub(super) fn limit_of_counting(&mut self, cell: &Cell) -> Option<Duration> {
+    pub(super) fn limit_of_counting(&self, cell: &Cell) -> Option<Duration> {
         let threads = cell.settings.threads.min(available_threads()) as u32;
         self.limit(cell).map(|limit| limit.saturating_mul(COUNTING.saturating_mul(threads)))
     }
 
-    fn usual(&mut self, cell: &Cell) -> Duration {
+    fn usual(&self, cell: &Cell) -> Duration {
         let Settings { spec, spp, scene, .. } = &cell.settings;
-        if cell.external.is_some() {
-            return WITHOUT_ESTIMATE;
+        if cell.external.is_some() || self.lab.workload_named(scene).is_some() {
+            return OF_OTHERS;
         }
         let samples = f64::from(spec.width) * f64::from(spec.height) * f64::from(*spp);
-        // The samples of a workload may take any time.
-        let is_scene = self.lab.workload_named(scene).is_none();
-        if is_scene && samples * SLOWEST_SAMPLE_S <= LEAST.as_secs_f64() {
-            return LEAST;
-        }
-        let Some(sample_s) = self.sample_s(&cell.settings) else { return WITHOUT_ESTIMATE };
-        Duration::try_from_secs_f64(TIMES * samples * sample_s).unwrap_or(Duration::MAX).max(LEAST)
-    }
-
-    fn sample_s(&mut self, settings: &Settings) -> Option<f64> {
-        let kind = small(settings);
-        if let Some((_, seconds)) = self.kinds.iter().find(|(known, _)| *known == kind) {
-            return *seconds;
-        }
-        let seconds = self.pilot(&kind, settings.spp);
-        self.kinds.push((kind, seconds));
-        seconds
-    }
-
-    /// Renders a kind of image in a process and returns the seconds of a sample; `spp` is a number of samples that it
-    /// can have. `None` if it fails: the cells of this kind will say why.
-    fn pilot(&self, kind: &Settings, spp: u32) -> Option<f64> {
-        let spp = self.lab.prepare(Settings { spp, ..kind.clone() }).ok()?.fewest_spp();
-        let settings = Settings { spp, ..kind.clone() };
-        let cell = Cell::new(&self.lab.prepare(settings.clone()).ok()?);
-        let points = vec![PointJob { cell: cell.id, spp, image: None }];
-        let job = CellJob { points, settings, scene: cell.scene, ..CellJob::default() };
-        let row = job.run_in_child(None, Some(LEAST)).into_iter().next()?;
-        let samples = f64::from(kind.spec.width) * f64::from(kind.spec.height) * f64::from(spp);
-        row.makespan_s.map(|seconds| seconds / samples)
+        Duration::try_from_secs_f64(samples * OF_SAMPLE.as_secs_f64()).unwrap_or(Duration::MAX).max(LEAST)
     }
 }
 
@@ -134,23 +100,22 @@ mod tests {
 
     const TEXT: &str = "title = \"t\"\nquestion = \"q\"\nfigures = []\n[matrix]\nscene = [\"cornell\"]\nspp = [4, 400]\nstrategy = [\"serial\"]\nthreads = [1]\ndecomposition = [\"rows\"]\n[[external]]\nname = \"other\"\nscene = \"cornell\"\nspp = [4]\nseed = [1]\ncommand = [\"{spp}\", \"{seed}\", \"{out}\"]\n[quick]\nsize = [100, 100]\n";
 
-    /// The limits of two cells and of another program, if a sample takes a hundredth of a second.
+    /// The limits of two cells and of another program.
     fn limits(text: &str, option: Option<Timeout>) -> Vec<Option<Duration>> {
         let definition = Definition::from_text(&Lab::built_in(), "x", "x.toml", text).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let options = Options { out: folder.path().to_path_buf(), timeout: option, ..Options::default() };
         let sweep = Sweep::new(&definition, &options, &mut Files::default()).unwrap();
-        let mut limits = Limits::of(&sweep).unwrap();
-        limits.kinds.push((small(&sweep.cells[0].settings), Some(1e-2)));
+        let limits = Limits::of(&sweep).unwrap();
         sweep.cells.iter().map(|cell| limits.limit(cell)).collect()
     }
 
-    /// Without a limit of the user: a minute for 40,000 samples, ten times 40,000 s for 4 million, an hour for another
-    /// program. The command's limit replaces the profile's, which replaces the file's.
+    /// Without a limit of the user: a minute for 40,000 samples, 4000 s for 4 million, an hour for another program. The
+    /// command's limit replaces the profile's, which replaces the file's.
     #[test]
     fn each_cell_has_the_nearest_limit() {
         let [minute, hour] = [60, 3600].map(|seconds| Some(Duration::from_secs(seconds)));
-        assert_eq!(limits(TEXT, None), [minute, Some(Duration::from_secs(400_000)), hour]);
+        assert_eq!(limits(TEXT, None), [minute, Some(Duration::from_secs(4000)), hour]);
         let file = format!("timeout = \"1h\"\n{TEXT}");
         assert_eq!(limits(&file, None), [hour; 3]);
         let profile = format!("{file}timeout = \"1min\"\n");
