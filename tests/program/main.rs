@@ -27,6 +27,7 @@ mod plan;
 mod price;
 #[path = "../support/program.rs"]
 mod program;
+mod published;
 mod rank;
 mod ranks;
 mod replicate;

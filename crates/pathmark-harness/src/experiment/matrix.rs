@@ -58,10 +58,6 @@ impl Definition {
             let error = InputError::new("requires", unknown, "there is no feature of that name");
             return Err(self.located(profile, error.allowed(names.join(", "))));
         }
-        if let Some((feature, takes)) = self.missing_feature() {
-            let error = InputError::new("requires", feature, "is missing from this build");
-            return Err(self.located(profile, error.allowed(takes)));
-        }
         let mut cells = Cells::default();
         let mut combinations = 0_u64;
         for matrix in self.matrices(profile) {

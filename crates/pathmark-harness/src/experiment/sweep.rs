@@ -94,6 +94,11 @@ pub struct Sweep<'a> {
 impl<'a> Sweep<'a> {
     /// Checks an experiment and adds its files to `files`, the files of the command.
     pub fn new(definition: &'a Definition, options: &'a Options, files: &mut Files) -> Result<Self> {
+        // Rows of a build with more features can be read without them.
+        if let Some((feature, takes)) = definition.missing_feature() {
+            let error = InputError::new("requires", feature, "is missing from this build");
+            return Err(definition.located(options.profile, error.allowed(takes)));
+        }
         let all = definition.cells(options.profile)?;
         let compared = Comparisons::of(definition, options.profile, &all)?;
         compared.check(definition, options.profile)?;

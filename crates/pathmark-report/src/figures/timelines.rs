@@ -29,6 +29,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         }
         runs.push((joined([timeline::name(&trace), series]), balance, schedule.key.threads <= processors));
     }
+    // An empty figure would replace the one that the traces gave.
+    if runs.is_empty() {
+        return Ok(vec![Block::notice("This folder has no traces, so nothing can be drawn job by job.")]);
+    }
     // A serial run takes as long as all workers together, so its lane would leave the others in a part of the width.
     let has_parallel = own.iter().any(|(is_serial, _)| !is_serial);
     let (serial, others): (Vec<_>, Vec<_>) = own.into_iter().partition(|(is_serial, _)| has_parallel && *is_serial);
@@ -44,7 +48,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     };
     let mut blocks = Vec::new();
     let others: Vec<Schedule> = others.into_iter().map(|(_, lanes)| lanes).collect();
-    if !others.is_empty() || shared.is_empty() {
+    if !others.is_empty() {
         let title = Title::new(timeline::TITLE).with_result(idle(&runs));
         blocks.push(Block::figure("timelines", chart(title, others, &alone.concat())));
     }
