@@ -79,6 +79,10 @@ const WRONG: &[(&[&str], &[&str])] = &[
     (&["--clamp", "subpixel:0"], &["clamp", "subpixel:0", "above 0"]),
     (&["--filter", "gauss"], &["filter", "gauss", "tent, box, center"]),
     (&["--epsilon=-1e-4"], &["epsilon", "-1e-4", "at least 0"]),
+    (&["--epsilon", "-1"], &["epsilon", "-1", "at least 0"]),
+    (&["--spp", "-4"], &["spp", "-4"]),
+    (&["--seed", "-1"], &["seed", "-1"]),
+    (&["--time-limit", "soon"], &["--time-limit", "soon", "2min"]),
     (&["--epsilon", "small"], &["epsilon", "small", "at least 0"]),
     // An existing profile that covers the scene, but not with this sampler.
     (&["--sampler", "sobol", "--effects", "surfaces"], &["effects", "surfaces", "sobol", "smallpt"]),

@@ -16,6 +16,7 @@ const WRONG: &[(&str, &str, &[&str])] = &[
     ),
     ("spp = [4]", "spp = [4]\noutput = [\"pigeon\"]", &["output", "pigeon", "slots"]),
     ("spp = [4]", "spp = [4]\noutput = []", &["output"]),
+    ("size = [24, 16]", "size = [24, 16, 4]", &["size", "length 3", "length 2"]),
     ("title = \"Tiny\"", "title = \"Tiny\"\nchapter = \"sports\"", &["chapter", "sports", "accuracy", "scheduling"]),
     ("title = \"Tiny\"", "title = \"Tiny\"\nplace = -1", &["place", "-1"]),
     ("title = \"Tiny\"", "title = \"Tiny\"\nin-short = 0", &["in-short", "0"]),
@@ -217,4 +218,18 @@ fn values_that_cannot_be_set_are_refused() {
         let message = refused(folder.path(), &["run", "tiny.toml", "--out", "new", "--set", value], 2, said);
         assert_eq!(place(&message, "tiny.toml"), None, "a line of a text that the user has not seen: {message}");
     }
+}
+
+/// A scene's file in the current folder, and another one of that name beside the experiment.
+#[test]
+fn a_scene_of_two_files_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let beside = folder.path().join("experiments");
+    std::fs::create_dir(&beside).unwrap();
+    write_tiny(&beside, TINY);
+    for place in [folder.path(), &beside] {
+        std::fs::write(place.join("room.toml"), "base = \"cornell\"\n").unwrap();
+    }
+    let run = ["run", "experiments/tiny.toml", "--out", "new", "--set", "scene=room.toml"];
+    refused(folder.path(), &run, 2, &["scene = room.toml", "one file here and another one beside the experiment"]);
 }

@@ -2,6 +2,7 @@
 
 use crate::diff::{json, run};
 use crate::experiment::{TINY, write_tiny};
+use serde_json::Value;
 use std::fs;
 
 #[test]
@@ -32,12 +33,21 @@ fn the_parts_of_a_real_sweep_add_up_within_their_intervals() {
     for file in ["losses.svg", "losses.png", "losses.csv"] {
         assert!(folder.path().join("out/tiny/figures").join(file).is_file(), "{file}");
     }
-    // The command that it prints is one that runs.
-    let command = schedules.iter().find_map(|own| own["remedy"]["command"].as_str());
-    if let Some((_, arguments)) = command.and_then(|command| command.split_once(' ')) {
+    // The commands that it prints run one after the other, and so do those for the rows that they make.
+    let remedies = |schedules: &[Value]| -> Vec<String> {
+        let all = schedules.iter().filter_map(|own| own["remedy"]["command"].as_str());
+        all.filter_map(|command| Some(command.split_once(' ')?.1.to_string())).collect()
+    };
+    for arguments in remedies(schedules) {
         let words: Vec<&str> = arguments.split(' ').collect();
         run(folder.path(), &words, 0);
-        assert!(folder.path().join("remedy/tiny/records.csv").is_file());
+        let made = format!("{}/tiny", words.last().unwrap());
+        assert!(folder.path().join(&made).join("records.csv").is_file(), "{arguments}");
+        let again = json(&run(folder.path(), &["why", &made, "--json"], 0).out);
+        for next in remedies(again.as_array().unwrap()) {
+            assert_eq!(next.matches("--set strategy=").count(), 1, "{next}");
+            assert!(next == arguments || !next.ends_with(words.last().unwrap()), "{next}");
+        }
     }
 }
 

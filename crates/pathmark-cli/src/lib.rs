@@ -94,9 +94,19 @@ fn no_text(command: &mut clap::Command) -> Error {
 fn read_arguments(lab: &Lab) -> std::result::Result<Cli, clap::Error> {
     let [name, version] = lab.program();
     // clap keeps a version for as long as the program runs.
-    let mut command = Cli::command().display_name(name).version(&*version.leak());
+    let mut command = with_negative_numbers(Cli::command()).display_name(name).version(&*version.leak());
     let matches = command.try_get_matches_from_mut(with_new_names(std::env::args_os()))?;
     Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
+}
+
+/// A negative number after an option is its value, so that the option can name it and its range. clap would take it for
+/// an option.
+fn with_negative_numbers(command: clap::Command) -> clap::Command {
+    let option = |arg: clap::Arg| {
+        let takes_value = arg.get_long().is_some() && arg.get_action().takes_values();
+        if takes_value { arg.allow_negative_numbers(true) } else { arg }
+    };
+    command.mut_args(option).mut_subcommands(with_negative_numbers)
 }
 
 /// Prints clap's message instead of running: an error, or the requested help or version.

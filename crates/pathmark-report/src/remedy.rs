@@ -173,18 +173,24 @@ impl<'a> Remedies<'a> {
         let asked = if asked.starts_with('-') { format!("./{asked}") } else { asked.clone() };
         let profile = Profile::from_name(&run.profile).unwrap_or(Profile::Quick);
         let value = |name: &str, own: String| changes.iter().find(|(of, _)| *of == name).map_or(own, |of| of.1.clone());
-        let schedule = [
-            format!("strategy=serial,{}", value("strategy", row.strategy.clone())),
-            format!("threads={}", value("threads", row.threads.to_string())),
-            format!("decomposition={}", value("decomposition", row.decomposition.clone())),
-        ];
-        let others = changes.iter().filter(|(name, _)| !["strategy", "threads", "decomposition"].contains(name));
-        let others = others.map(|(name, value)| format!("{name}={value}"));
-        let values = run.set.iter().cloned().chain(schedule).chain(others);
+        let schedule = ["strategy", "threads", "decomposition"].map(|name| match name {
+            "strategy" => (name, value(name, row.strategy.clone())),
+            "threads" => (name, value(name, row.threads.to_string())),
+            _ => (name, value(name, row.decomposition.clone())),
+        });
+        let others = changes.iter().filter(|(name, _)| !schedule.iter().any(|(own, _)| own == name)).cloned();
+        let tried: Vec<Change> = schedule.iter().cloned().chain(others).collect();
+        // Rows are never overwritten, so each remedy has a folder of its own.
+        let words = tried.iter().map(|(_, value)| value.replace(|c: char| !c.is_ascii_alphanumeric(), "-"));
+        let out = format!("remedy/{}", words.collect::<Vec<_>>().join("-"));
+        let is_kept = |pair: &&String| !tried.iter().any(|(name, _)| pair.split('=').next() == Some(name));
+        let serial =
+            |(name, value): &Change| if *name == "strategy" { format!("serial,{value}") } else { value.clone() };
+        let values = tried.iter().map(|own| format!("{}={}", own.0, serial(own)));
+        let values = run.set.iter().filter(is_kept).cloned().chain(values);
         let values = values.flat_map(|pair| ["--set".to_string(), pair]);
         let words = ["run".to_string(), asked, format!("--{}", profile.name())].into_iter().chain(values);
-        // Rows are never overwritten.
-        shell::command(words.chain(["--out".to_string(), "remedy".to_string()]))
+        shell::command(words.chain(["--out".to_string(), out]))
     }
 }
 

@@ -30,13 +30,13 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME")]
     with: Option<String>,
     /// Time that the caller sleeps before each region
-    #[arg(long, value_name = "TIME,..", value_delimiter = ',', default_value = "20us,200us,2ms", value_parser = length)]
+    #[arg(long, value_name = "TIME,..", value_delimiter = ',', default_value = "20us,200us,2ms", value_parser = length, allow_hyphen_values = true)]
     gap: Vec<Duration>,
     /// Jobs of a region
     #[arg(long, value_name = "J", default_value_t = 8, value_parser = value_parser!(u32).range(1..=1_000_000))]
     jobs: u32,
     /// Length of a job
-    #[arg(long, value_name = "TIME", default_value = "5us", value_parser = length)]
+    #[arg(long, value_name = "TIME", default_value = "5us", value_parser = length, allow_hyphen_values = true)]
     job: Duration,
     /// Workers [default: one per processor]
     #[arg(long, value_name = "T", value_parser = value_parser!(u16).range(1..=16_384))]

@@ -10,14 +10,20 @@ pub(super) const PAUSE_S: f64 = 10.0;
 #[derive(Args)]
 pub(super) struct Until {
     /// Stop when the image's own RMSE in linear radiance, estimated from its samples, is below E with 95 % confidence
-    #[arg(long, value_name = "E", allow_negative_numbers = true)]
+    #[arg(long, value_name = "E")]
     target_error: Option<f64>,
     /// Stop before rendering takes longer than this; at least one round is rendered
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     time_limit: Option<f64>,
     /// Save the render in this file at intervals, and resume from it if it exists
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
+}
+
+/// Seconds, with or without their unit.
+fn seconds(text: &str) -> std::result::Result<f64, String> {
+    let length = || humantime::parse_duration(text).ok().map(|length| length.as_secs_f64());
+    text.parse().ok().or_else(length).ok_or_else(|| "is no time (allowed: seconds, or a time such as 2min)".to_string())
 }
 
 impl Until {

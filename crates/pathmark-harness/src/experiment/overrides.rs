@@ -13,6 +13,7 @@ use crate::error::{InputError, Result};
 use crate::input::parse;
 use crate::measure::{Kind, SETTINGS, Setting, parse_size};
 use std::collections::BTreeSet;
+use std::path::Path;
 use toml::{Table, Value};
 
 /// The tables of profiles, which may hold a value instead of the matrix.
@@ -27,6 +28,7 @@ impl Definition {
         let mut table: Table = parse(&self.text, &self.file)?;
         for pair in pairs {
             set(&mut table, pair)?;
+            self.check_scenes(pair)?;
         }
         let given: Vec<String> = pairs.iter().map(|pair| format!("--set {pair}")).collect();
         let text = toml::to_string_pretty(&table)
@@ -35,6 +37,23 @@ impl Definition {
         let mut changed = Self::from_text(&self.lab, &self.name, &self.file, &text)?;
         (changed.asked, changed.set) = (self.asked, [self.set, pairs.to_vec()].concat());
         Ok(changed)
+    }
+
+    /// Refuses a scene's file that is both in the current folder, where a user looks first, and beside the definition,
+    /// where the scenes of a definition are.
+    fn check_scenes(&self, pair: &str) -> Result<()> {
+        let Some(("scene", scenes)) = pair.split_once('=') else { return Ok(()) };
+        let folder = Path::new(&self.file).parent().unwrap_or(Path::new(""));
+        for scene in scenes.split(',') {
+            let found = [Path::new(scene).canonicalize(), folder.join(scene).canonicalize()];
+            if matches!(&found, [Ok(here), Ok(beside)] if here.is_file() && here != beside) {
+                let problem = "is one file here and another one beside the experiment";
+                return Err(InputError::new("scene", scene, problem)
+                    .allowed("a path from /, or of one of them")
+                    .into());
+            }
+        }
+        Ok(())
     }
 }
 

@@ -4,6 +4,7 @@ use super::definition::REFERENCE_SPP;
 use super::second_stage::SecondStage;
 use super::stopping_rule::{MOST_REPETITIONS, StoppingRule};
 use super::{Profile, Timeout};
+use crate::input::array;
 use crate::measure::{Kind, SETTINGS, Setting, available_threads};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{DeserializeSeed, Error as _, MapAccess, SeqAccess, Visitor};
@@ -163,7 +164,7 @@ impl<'de> DeserializeSeed<'de> for Values {
             Kind::Seed => words(&Vec::<u64>::deserialize(from)?),
             Kind::Workers => Vec::<Threads>::deserialize(from)?.iter().map(|own| own.count().to_string()).collect(),
             // All cells have the same size, so it is not a list.
-            Kind::Size => <[u32; 2]>::deserialize(from).map(|[width, height]| vec![format!("{width}x{height}")])?,
+            Kind::Size => array(from).map(|[width, height]: [u32; 2]| vec![format!("{width}x{height}")])?,
         })
     }
 }

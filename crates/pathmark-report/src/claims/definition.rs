@@ -42,7 +42,7 @@ use super::verdict::{NAMES, Verdict};
 use crate::error::{Error, InputError, Result};
 use crate::experiment;
 use crate::files::entries;
-use crate::input::{parse, read_text};
+use crate::input::{optional_array, parse, read_text};
 use crate::lab::Lab;
 use crate::time::{FORM, is_time};
 use serde::Deserialize;
@@ -156,6 +156,7 @@ pub struct Claim {
     not_comparable: Option<String>,
     missing: Option<String>,
     statistic: Option<String>,
+    #[serde(default, deserialize_with = "optional_array")]
     within: Option<[f64; 2]>,
     at_least: Option<f64>,
     at_most: Option<f64>,

@@ -1,6 +1,7 @@
 //! Efficiency against the size of a job, the size at which half is lost (METG), and the overhead of a job.
 
 use crate::analysis::metg::{Grain, HALF, Metg, metg};
+use crate::input::optional_array;
 use crate::measure::SERIAL;
 use crate::plot::Panels;
 use crate::plot::number::short;
@@ -12,6 +13,7 @@ use crate::titles::Sides;
 #[serde(deny_unknown_fields)]
 pub(super) struct Options {
     /// Two strategies whose times are compared on each decomposition.
+    #[serde(default, deserialize_with = "optional_array")]
     compare: Option<[String; 2]>,
 }
 

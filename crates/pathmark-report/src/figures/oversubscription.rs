@@ -1,5 +1,6 @@
 //! More threads than processors: from more sections of the image with a thread each, and from more threads alone.
 
+use crate::input::array;
 use crate::prelude::*;
 use crate::serial::{with_pieces, without_pieces};
 use crate::words::with_interval;
@@ -20,6 +21,7 @@ struct Claim {
     /// The strategy with a thread for each processor.
     few: String,
     /// The smallest and the largest number of sections that the claim calls good.
+    #[serde(deserialize_with = "array")]
     sections: [usize; 2],
     /// The decomposition that they are compared with.
     against: String,

@@ -23,11 +23,32 @@ fn checked_triple<'de, D: Deserializer<'de>>(
     is_allowed: impl Fn(f64) -> bool,
     allowed: &str,
 ) -> Result<[f64; 3], D::Error> {
-    let values = <[f64; 3]>::deserialize(deserializer)?;
+    let values: [f64; 3] = array(deserializer)?;
     match values.iter().find(|value| !is_allowed(**value)) {
         None => Ok(values),
         Some(value) => Err(out_of_range(*value, allowed)),
     }
+}
+
+/// Reads exactly `N` values. The arrays of `serde` leave out those after the last, and so does `toml`.
+pub fn array<'de, T: Deserialize<'de>, D: Deserializer<'de>, const N: usize>(
+    deserializer: D,
+) -> Result<[T; N], D::Error> {
+    let values = Vec::<T>::deserialize(deserializer)?;
+    exactly(values)
+}
+
+/// Reads exactly `N` values, where a key may be left out.
+pub fn optional_array<'de, T: Deserialize<'de>, D: Deserializer<'de>, const N: usize>(
+    deserializer: D,
+) -> Result<Option<[T; N]>, D::Error> {
+    array(deserializer).map(Some)
+}
+
+/// Returns the values as an array, or the error for their number.
+pub fn exactly<T, E: Error, const N: usize>(values: Vec<T>) -> Result<[T; N], E> {
+    let count = values.len();
+    values.try_into().map_err(|_| E::invalid_length(count, &format!("an array of length {N}").as_str()))
 }
 
 /// Whether a coordinate is within bounds; false for NaN.

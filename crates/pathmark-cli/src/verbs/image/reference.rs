@@ -13,7 +13,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "N", required_unless_present = "until", conflicts_with = "until")]
     spp: Option<u32>,
     /// Double both halves until the estimated RMSE of their average is at most this; continues from cached halves
-    #[arg(long, value_name = "RMSE", allow_negative_numbers = true)]
+    #[arg(long, value_name = "RMSE")]
     until: Option<f64>,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "512x384")]

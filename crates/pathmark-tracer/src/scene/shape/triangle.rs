@@ -5,7 +5,7 @@
 //! ```
 
 use super::{Bounds, Primitive};
-use crate::input::{coordinate_limit, out_of_range};
+use crate::input::{array, point};
 use crate::math::{Ray, Shear, Vec3, dot, sheared, triangle_root};
 use serde::{Deserialize, Deserializer};
 
@@ -27,16 +27,13 @@ fn corners<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[Vec3; 3], D::E
 }
 
 /// Reads `N` points.
-pub(super) fn points<'de, D: Deserializer<'de>, const N: usize>(deserializer: D) -> Result<[Vec3; N], D::Error>
-where
-    [[f64; 3]; N]: Deserialize<'de>,
-{
-    let points = <[[f64; 3]; N]>::deserialize(deserializer)?;
-    match points.iter().flatten().find(|x| !coordinate_limit(**x)) {
-        None => Ok(points.map(Vec3::from)),
-        Some(x) => Err(out_of_range(*x, "-1e100 to 1e100 in each coordinate")),
-    }
+pub(super) fn points<'de, D: Deserializer<'de>, const N: usize>(deserializer: D) -> Result<[Vec3; N], D::Error> {
+    array::<Point, D, N>(deserializer).map(|points| points.map(|Point(point)| point))
 }
+
+#[derive(Deserialize)]
+#[serde(transparent)]
+struct Point(#[serde(deserialize_with = "point")] Vec3);
 
 impl Triangle {
     /// Whether its corners lie on a line, or so nearly that it has no normal.
