@@ -43,8 +43,8 @@ fn the_parts_of_a_real_sweep_add_up_within_their_intervals() {
         run(folder.path(), &words, 0);
         let made = format!("{}/tiny", words.last().unwrap());
         assert!(folder.path().join(&made).join("records.csv").is_file(), "{arguments}");
-        let again = json(&run(folder.path(), &["why", &made, "--json"], 0).out);
-        for next in remedies(again.as_array().unwrap()) {
+        let again = json(&run(folder.path(), &["why", &made, "--json"], 0));
+        for next in remedies(again["schedules"].as_array().unwrap()) {
             assert_eq!(next.matches("--set strategy=").count(), 1, "{next}");
             assert!(next == arguments || !next.ends_with(words.last().unwrap()), "{next}");
         }
