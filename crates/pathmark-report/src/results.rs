@@ -30,6 +30,7 @@ pub struct Results {
     /// The folder that holds all experiments and the references.
     pub out: PathBuf,
     rows: Vec<Row>,
+    doubts: TimingConcerns,
     /// The properties that distinguish series of images, beside samples and seed.
     image_parts: Vec<&'static Setting>,
 }
@@ -50,10 +51,11 @@ impl Results {
         let left_out = LeftOut::of(&done);
         done.retain(|row| !row.is_left_out());
         name_scenes_alike(&mut done);
+        let doubts = TimingConcerns::of(done.iter().map(|row| row.warnings.as_str()));
         let rows = by_process(named(done));
         let image_parts = image_parts(&rows);
         let (folder, out) = (folder.to_path_buf(), out.to_path_buf());
-        Ok(Self { definition, run, failed, left_out, folder, out, rows, image_parts })
+        Ok(Self { definition, run, failed, left_out, folder, out, rows, doubts, image_parts })
     }
 
     /// Reads an experiment's folder; its parent is the folder of all experiments.
@@ -80,9 +82,9 @@ impl Results {
         if self.run.until.is_some() { Stopping::Sequential } else { Stopping::Fixed }
     }
 
-    /// Doubts about the times of the rows that did not fail.
+    /// Doubts about the times of the file's rows that did not fail; [`Results::rows`] has the pairs of a process as one.
     pub fn doubts(&self) -> TimingConcerns {
-        TimingConcerns::of(self.rows.iter().map(|row| row.warnings.as_str()))
+        self.doubts
     }
 
     /// Workers that can run at the same time, where cores of a slower kind count by their speed.
@@ -100,9 +102,9 @@ impl Results {
         }
     }
 
-    /// How many rows did not fail.
+    /// How many of the file's rows did not fail.
     pub(super) fn len(&self) -> usize {
-        self.rows.len()
+        self.doubts.rows()
     }
 
     /// The first row, for properties that all rows share.

@@ -51,6 +51,10 @@ impl TimingConcerns {
         }
     }
 
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
     pub fn count(&self) -> usize {
         self.doubted
     }

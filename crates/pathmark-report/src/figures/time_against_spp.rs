@@ -59,8 +59,14 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let longest = titles::largest_above_1(
             shares.iter().flat_map(|(_, own)| own).filter_map(|(spp, told)| Some((*spp, Ratio::of(*told)?))),
         );
+        // The fit of all numbers of samples may see a departure that none of them shows alone.
+        let none = if fits.iter().any(Fit::departs) {
+            "No number of samples shows it alone, but time departs from a proportion to the samples"
+        } else {
+            "No time per sample is told apart from that of the longest renders"
+        };
         let result = longest.map_or_else(
-            || "No time per sample is told apart from that of the longest renders".to_string(),
+            || none.to_string(),
             |(spp, ratio)| {
                 let longer = titles::longer(ratio.value);
                 format!("Short renders pay for their start: at {spp} samples per pixel a sample takes {longer}")

@@ -250,7 +250,7 @@ fn banner(sections: &[Section]) -> Markup {
         @if 10 * doubted > rows {
             div.failed.banner {
                 p { strong { (doubted) " of " (rows) " rows were disturbed." } " Other programs, the clock or the host of a virtual machine changed their times. "
-                    @if disturbed > 0 { "Figures of " (counted(disturbed, "section")) " with half of the rows in doubt are grey." } }
+                    @if disturbed > 0 { "Figures of " (counted(disturbed, "section")) " with half of the rows in doubt are pale." } }
             }
         }
     }
@@ -399,7 +399,7 @@ fn part(section: &Section, block: &Block, is_first_table: bool, styles: &mut Sty
     })
 }
 
-/// A figure, which is grey if times that it may show are in doubt.
+/// A figure, which is pale if times that it may show are in doubt.
 fn figure_markup(section: &Section, stem: &str, figure: &dyn Figure, styles: &mut Styles) -> Result<Markup> {
     let drawing = figure.drawing();
     let svg = styles.figure(&drawing, &notes::of(&drawing.notes))?;
@@ -416,7 +416,7 @@ fn figure_markup(section: &Section, stem: &str, figure: &dyn Figure, styles: &mu
             @if let Some(data) = figure.data() { script.jobs type="application/json" { (PreEscaped(in_script(&data))) } }
             figcaption {
                 (number(section, stem))
-                @if is_disturbed { " Grey, because the times of " (section.doubts.count()) " of " (section.rows) " rows are in doubt." }
+                @if is_disturbed { " Pale, because the times of " (section.doubts.count()) " of " (section.rows) " rows are in doubt." }
             }
         }
     })

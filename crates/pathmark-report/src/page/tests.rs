@@ -41,9 +41,9 @@ fn other_programs_share_the_scene_of_our_rows() {
     assert!(html.contains("bsdf takes 1.00 times the seconds of other"), "{html}");
 }
 
-/// With half of the times in doubt, figures are grey and say so.
+/// With half of the times in doubt, figures are pale and say so.
 #[test]
-fn disturbed_figures_are_grey_and_say_so() {
+fn disturbed_figures_are_pale_and_say_so() {
     let page = |doubted: u32| {
         let runs = (0..6).flat_map(|repetition| [("serial", 1, 2.0), ("rayon", 2, 1.0)].map(|run| (repetition, run)));
         let rows = runs.map(|(repetition, (strategy, threads, seconds))| Record {
@@ -56,8 +56,8 @@ fn disturbed_figures_are_grey_and_say_so() {
         });
         html(&[section_of(&["speedup"], "", rows.collect())]).unwrap()
     };
-    let is_grey = |html: &str| html.contains("<figure class=\"disturbed\" id=\"an-experiment-speedup\">");
+    let is_pale = |html: &str| html.contains("<figure class=\"disturbed\" id=\"an-experiment-speedup\">");
     let (half, fewer) = (page(3), page(2));
-    assert!(is_grey(&half) && half.contains("Grey, because the times of 6 of 12 rows are in doubt."), "{half}");
-    assert!(!is_grey(&fewer) && !fewer.contains("Grey, because"), "{fewer}");
+    assert!(is_pale(&half) && half.contains("Pale, because the times of 6 of 12 rows are in doubt."), "{half}");
+    assert!(!is_pale(&fewer) && !fewer.contains("Pale, because"), "{fewer}");
 }
