@@ -30,7 +30,7 @@ fn bases_that_are_not_there_are_refused() {
         ("nowhere.toml", &["base = nowhere.toml", "no such file"]),
         ("/dev/zero", &["base = /dev/zero", "byte 0 is zero"]),
         (".", &["base = ."]),
-        ("cornell:5", &["base = cornell:5", "no scene of that name"]),
+        ("spheres:5", &["base = spheres:5", "has a number", "spheres; a table [generator.NAME]"]),
     ] {
         if base.starts_with('/') && !Path::new(base).exists() {
             continue;

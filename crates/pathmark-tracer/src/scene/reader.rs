@@ -24,7 +24,7 @@
 //! has, and `without` lists objects to leave out.
 
 use super::generator::{Generator, Made};
-use super::library::{CustomScene, Files, Folder, Source, source};
+use super::library::{CustomScene, Files, Folder, SCENES, Source, source};
 use super::shape::{AnyShape, Primitives};
 use super::{Camera, Faults, Fog, Object, PointLight, Scene, USUAL_ESTIMATOR};
 use crate::digest::Fingerprint;
@@ -279,6 +279,10 @@ fn base_of(from: &Source, base: &str, depth: usize, own: &[CustomScene]) -> Resu
         |problem: String| InputError::new("base", base, problem).in_file(&from.file, locate(&from.text, "base", base));
     if depth == DEEPEST_BASE {
         return Err(error(format!("follows a chain of {DEEPEST_BASE} bases, which may form a circle")).into());
+    }
+    if let Some((name, _)) = base.split_once(':').filter(|(name, _)| SCENES.iter().any(|(known, _)| known == name)) {
+        let error = error("has a number, which a base does not take".to_string());
+        return Err(error.allowed(format!("{name}; a table [generator.NAME] replaces that of the base")).into());
     }
     let source = source(base, &from.folder, own)
         .map_err(|problem| problem.placed(|problem| error(problem.problem).allowed(problem.allowed).into()))?;
