@@ -23,7 +23,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Options { cores, decomposition } = options(&results.definition, "forecast")?;
     let cores = cores.map_or(CORES.to_vec(), |cores| cores.into_iter().map(NonZeroUsize::get).collect());
     let decomposition = decomposition.unwrap_or_else(|| "rows".to_string());
-    let path = results.folder.join("calibration.csv");
+    let path = results.calibration_path();
     if !path.is_file() {
         return Ok(vec![Block::notice("There is no calibration.csv, so nothing can be simulated.")]);
     }
