@@ -190,8 +190,8 @@ fn check_complete(of_sources: &[Answer<'_>], answers: &[Answer<'_>]) -> Result<(
     let is_other = |own: &&Answer<'_>| found.get(&own.claim.id) != Some(&own.verdict);
     let Some(own) = of_sources.iter().find(is_other) else { return Ok(()) };
     let told = found.get(&own.claim.id).map_or_else(|| "no verdict".to_string(), Verdict::to_string);
-    let problem = format!("the files in the archive give {told}, those of the folders {}", own.verdict);
-    Err(InputError::new("claim", own.claim.id.to_string(), problem).into())
+    let (id, verdict) = (own.claim.id, own.verdict);
+    Err(Error::Check(format!("claim {id}: the folders give {verdict}, their files in the archive {told}")))
 }
 
 /// Refuses a folder that holds anything.
