@@ -231,6 +231,22 @@ fn the_programs_own_ledgers_pass_the_check() {
     assert!(checked.contains("claim 26: confirmed, as stated"), "{checked}");
 }
 
+/// A claim about a forecast is judged by traces and calibrations, so they come along.
+#[test]
+fn a_claim_about_a_forecast_keeps_its_verdict() {
+    let folder = in_memory();
+    let rows = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/reports-2/scaling-forecast");
+    fs::create_dir(folder.path().join("out")).unwrap();
+    unpack(&rows, &folder.path().join("out/scaling-forecast"));
+    fs::write(folder.path().join("out/scaling-forecast/traces/of-no-row.csv"), "").unwrap();
+    finish(pathmark(folder.path(), &["artifact", "made", "out"])).with_code(0);
+    let made = folder.path().join("made");
+    let traces = fs::read_dir(made.join("rows/out/scaling-forecast/traces")).unwrap().count();
+    assert_eq!(traces, 6, "those of the serial rows, and no others");
+    let checked = finish(pathmark(&made, &["artifact", ".", "--check"])).with_code(0).out;
+    assert!(checked.contains("claim 7: refuted, as stated"), "{checked}");
+}
+
 /// Packed rows are taken as they are, a missing page is drawn, scene files come along, and missing names are named so.
 #[test]
 fn packed_rows_pages_and_scenes_come_along() {

@@ -37,11 +37,17 @@ fn schedules_of_one_speed_share_a_group_and_others_do_not() {
     let [low, high] = ["low", "high"].map(|end| places[4]["interval"][end].as_f64().unwrap());
     assert!(low <= 3.0 + 1e-9 && high >= 3.0 - 1e-9 && high - low < 0.1, "{low} to {high}");
     let printed = run(folder.path(), &["rank", "ranked"], 0);
-    assert!(printed.out.contains("ratio") && printed.out.lines().any(|line| line.contains("  c ")), "{}", printed.out);
+    assert!(
+        printed.out.contains("time / first")
+            && printed.out.contains("The place is decided by ")
+            && printed.out.lines().any(|line| line.contains("  c ")),
+        "{}",
+        printed.out
+    );
     assert!(!printed.err.contains("--repetitions"), "{}", printed.err);
     let markdown = run(folder.path(), &["rank", "ranked", "--markdown"], 0).out;
     assert!(
-        markdown.contains("| ratio | interval | median | groups | schedule |\n|--:|--:|--:|--|--|\n"),
+        markdown.contains("| time / first | interval | median | groups | schedule |\n|--:|--:|--:|--|--|\n"),
         "{markdown}"
     );
     assert_eq!(markdown.lines().filter(|line| line.starts_with("| ")).count(), 1 + 5, "{markdown}");

@@ -7,11 +7,19 @@ use crate::files::entries;
 use crate::page::Section;
 use crate::prelude::*;
 use crate::schedule::crew;
+use crate::{PAGES, bursts, cases_file, claims, guard_prices};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Folders beside experiments in which a sweep leaves the rows of another build.
 const OTHER_BUILDS: [&str; 2] = ["baseline", "against"];
+
+/// Folders that Pathmark writes beside experiments, which are no student's.
+const NO_STUDENTS: [&str; 7] =
+    ["figures", PAGES, "references", guard_prices::FOLDER, cases_file::FOLDER, bursts::FOLDER, claims::FOLDER];
+
+/// How many levels below a student's folder rows are looked for, to say where they are.
+const DEEPEST: usize = 3;
 
 /// An experiment's folder on the page.
 #[derive(Debug, PartialEq, Eq)]
@@ -30,7 +38,7 @@ pub(crate) fn members(out: &Path) -> Result<Vec<Member>> {
     }
     let (with_rows, others): (Vec<PathBuf>, Vec<PathBuf>) =
         folders(out)?.into_iter().partition(|path| has_records(path));
-    let mut found = with_rows.into_iter().map(member).collect::<Result<Vec<Member>>>()?;
+    let mut found = with_rows.into_iter().map(member).collect::<Vec<Member>>();
     // A folder of results may have others in it, such as those of earlier versions.
     if found.iter().all(|member| member.student.is_some()) {
         for student in others.into_iter().filter(|folder| !OTHER_BUILDS.contains(&name_of(folder).as_str())) {
@@ -52,13 +60,49 @@ fn name_of(folder: &Path) -> String {
     folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// A folder that does not have the name of the experiment that was run has that of a student.
-fn member(folder: PathBuf) -> Result<Member> {
-    let path = folder.join(MACHINE);
-    let experiment = if path.is_file() { read_run_file(&path)?.experiment } else { String::new() };
-    let own = name_of(&folder);
-    let asked = Path::new(&experiment).file_stem().map(|stem| stem.to_string_lossy().into_owned());
-    Ok(Member { student: asked.filter(|asked| *asked != own).map(|_| own), folder })
+/// The folders in that of a class that have neither rows nor experiments, each in a sentence; none for results of one's own.
+pub(crate) fn without_rows(out: &Path, members: &[Member]) -> Result<Vec<String>> {
+    // A student alone is on a page like any experiment's.
+    let is_student = |own: &Member| {
+        own.student.is_some() || (own.folder.parent() == Some(out) && member(own.folder.clone()).student.is_some())
+    };
+    if members.is_empty() || !members.iter().all(is_student) {
+        return Ok(Vec::new());
+    }
+    let mut told = Vec::new();
+    for folder in folders(out)? {
+        let name = name_of(&folder);
+        let is_own =
+            name.starts_with('.') || OTHER_BUILDS.contains(&name.as_str()) || NO_STUDENTS.contains(&name.as_str());
+        if is_own || members.iter().any(|member| member.folder.starts_with(&folder)) {
+            continue;
+        }
+        let deeper = rows_below(&folder, DEEPEST);
+        let place = deeper.and_then(|found| Some(found.strip_prefix(out).ok()?.display().to_string()));
+        let place = place.map_or_else(String::new, |place| format!("; there is one in {place}, which is too deep"));
+        told.push(format!("{name} is left out: neither it nor a folder in it has a records.csv{place}"));
+    }
+    Ok(told)
+}
+
+/// The first folder with rows below another one, at most so many levels deep.
+fn rows_below(folder: &Path, levels: usize) -> Option<PathBuf> {
+    let of_inner = |inner: PathBuf| {
+        let deeper = || if levels > 1 { rows_below(&inner, levels - 1) } else { None };
+        if has_records(&inner) { Some(inner) } else { deeper() }
+    };
+    folders(folder).ok()?.into_iter().find_map(of_inner)
+}
+
+/// A folder that does not have the name of the experiment that was run has that of a student. So has one whose file about
+/// the run cannot be read, which the page tells.
+fn member(folder: PathBuf) -> Member {
+    let (path, own) = (folder.join(MACHINE), name_of(&folder));
+    let is_other = path.is_file()
+        && read_run_file(&path).map_or(true, |run| {
+            Path::new(&run.experiment).file_stem().is_some_and(|stem| stem.to_string_lossy() != own)
+        });
+    Member { student: is_other.then_some(own), folder }
 }
 
 fn folders(out: &Path) -> Result<Vec<PathBuf>> {
@@ -102,12 +146,12 @@ pub(crate) struct Class {
 
 impl Class {
     pub(crate) fn add(&mut self, student: &str, results: &Results) -> Result<()> {
+        let serial = results.serial()?;
         let machine = &results.run.machine;
         self.students.insert(student.to_string());
         self.machines.insert(machine.line());
         let own = results.definition.chapter;
         self.chapter = Some(self.chapter.map_or(own, |first| first.min(own)));
-        let serial = results.serial()?;
         self.lines.extend(serial.speedups().into_iter().map(|(schedule, speedup)| Line {
             student: student.to_string(),
             schedule: crew(&serial.line(schedule), schedule.key.threads),
@@ -275,7 +319,7 @@ mod tests {
     fn names_of_folders_break_no_link() {
         let class = class();
         fs::rename(class.path().join("anna"), class.path().join("a #1 50%")).unwrap();
-        let index = crate::write_pages("--pages", &Lab::built_in(), class.path()).unwrap();
+        let index = crate::write_pages("--pages", &Lab::built_in(), class.path()).unwrap().path;
         let page = fs::read_to_string(class.path().join("report.html")).unwrap();
         let links =
             ["a%20%231%2050%25/records.csv", "bert%20b/an-experiment/machine.toml", "#a--1-50-", "#a--1-50--again"];
@@ -286,6 +330,34 @@ mod tests {
         let index = fs::read_to_string(index).unwrap();
         assert!(index.contains("href=\"a%20%231%2050%25.html\""), "{index}");
         assert!(class.path().join("pages/a #1 50%.html").is_file());
+    }
+
+    /// A student's rows lie too deep, one's are damaged, and one has none; the others' page tells so.
+    #[test]
+    fn students_without_rows_or_with_damaged_ones_are_named() {
+        let class = class();
+        let inside = |name: &str| class.path().join(name);
+        copy(&inside("bert b"), &inside("emil/out"));
+        copy(&inside("anna"), &inside("dora"));
+        fs::write(inside("dora/records.csv"), "nonsense\n1\n").unwrap();
+        for name in ["frida", ".git", "references"] {
+            fs::create_dir(inside(name)).unwrap();
+        }
+        let written = crate::write_told(&Lab::built_in(), class.path()).unwrap();
+        let [emil, frida, dora] = &written.left_out[..] else { panic!("{:?}", written.left_out) };
+        let deep = "; there is one in emil/out/an-experiment, which is too deep";
+        assert!(emil.starts_with("emil is left out: neither ") && emil.ends_with(deep), "{emil}");
+        assert!(frida.starts_with("frida is left out: neither ") && frida.ends_with(" a records.csv"), "{frida}");
+        assert!(dora.starts_with("dora is left out: ") && dora.contains("records.csv"), "{dora}");
+        let page = fs::read_to_string(written.path).unwrap();
+        for name in ["emil", "frida", "dora"] {
+            assert!(page.contains(&format!("{name} is left out: ")), "{name}");
+        }
+        assert!(page.contains("speedups of 2 folders") && page.contains("<h3>bert b: </h3>"), "{page}");
+        // Of damaged students alone there is no page.
+        fs::write(inside("anna/records.csv"), "nonsense\n1\n").unwrap();
+        fs::remove_dir_all(inside("bert b")).unwrap();
+        assert!(crate::write_told(&Lab::built_in(), class.path()).is_err());
     }
 
     /// Forty folders of forty machines, which differ in speed by up to forty times and whose pools are 1.1 to 5 times as fast

@@ -5,8 +5,8 @@ use crate::analysis::speedup::serial_fraction;
 use crate::plot::number::{between, short};
 use crate::prelude::*;
 use crate::simulate::{
-    BusyRatio, Contender, DISTURBED, Forecast, Observed, Prediction, RelativeErrors, WorkInflation, busy_ratios,
-    predict, relative_errors,
+    BusyRatio, Contender, DISTURBED, Forecast, LONGEST_FIRST, Observed, Prediction, RelativeErrors, WorkInflation,
+    busy_ratios, predict, relative_errors,
 };
 use std::collections::HashMap;
 
@@ -251,12 +251,21 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str, equal_cores: bool, nam
     blocks
 }
 
+/// The strategy with the highest speedup on so many cores. The longest job first is none: it needs all costs beforehand.
+pub(super) fn best(rows: &[Forecast], cores: usize) -> Option<&Forecast> {
+    let own = strategies(rows).filter(|row| row.workers == cores);
+    own.max_by(|a, b| a.speedup.value.total_cmp(&b.speedup.value))
+}
+
+fn strategies(rows: &[Forecast]) -> impl Iterator<Item = &Forecast> {
+    rows.iter().filter(|row| row.strategy != LONGEST_FIRST)
+}
+
 /// The results in a line each: the highest speedup, the cores that are of use, and the limit of the time.
 fn results(rows: &[Forecast]) -> [Option<String>; 3] {
     let most = rows.iter().map(|row| row.workers).max().filter(|most| *most > 1);
     let best = most.and_then(|most| {
-        let best = rows.iter().filter(|row| row.workers == most);
-        let best = best.max_by(|a, b| a.speedup.value.total_cmp(&b.speedup.value))?;
+        let best = best(rows, most)?;
         let speedup = titles::told(best.speedup)?;
         Some(format!(
             "On {most} cores the best schedule, {}, would be {speedup} times as fast as serial",
@@ -267,7 +276,7 @@ fn results(rows: &[Forecast]) -> [Option<String>; 3] {
         let interval = row.efficiency().and_then(|efficiency| efficiency.interval);
         row.workers > 1 && interval.is_some_and(|interval| interval.low >= 0.5)
     };
-    let useful = rows.iter().filter(keeps_half).map(|row| row.workers).max();
+    let useful = strategies(rows).filter(keeps_half).map(|row| row.workers).max();
     let useful =
         useful.map(|cores| format!("Up to {cores} cores, the best schedule turns half of them or more into speedup"));
     let limited = rows.iter().filter(|row| row.longest_s >= row.share_s).map(|row| row.workers).min();
@@ -329,11 +338,11 @@ mod tests {
     /// Work of 8 s whose longest job takes 2 s, so that four cores reach it; eight cores are half as fast as eight.
     #[test]
     fn results_tell_the_gain_the_useful_cores_and_the_limit() {
-        let row = |(workers, speedup): (usize, f64)| {
+        let row = |strategy: &str, (workers, speedup): (usize, f64)| {
             let interval = Interval { low: 0.99 * speedup, high: 1.01 * speedup, level: LEVEL };
             let crossed = |value: f64, interval| Crossed { value, interval };
             Forecast {
-                strategy: "dynamic".to_string(),
+                strategy: strategy.to_string(),
                 workers,
                 traces: 3,
                 calibrations: 1,
@@ -344,7 +353,10 @@ mod tests {
                 greedy_s: 0.0,
             }
         };
-        let rows: Vec<Forecast> = [(1, 1.0), (2, 2.0), (4, 3.5), (8, 4.0)].into_iter().map(row).collect();
+        let speedups = [(1, 1.0), (2, 2.0), (4, 3.5), (8, 4.0)];
+        let mut rows: Vec<Forecast> = speedups.into_iter().map(|own| row("dynamic", own)).collect();
+        // A yardstick that knows all costs is no schedule that anyone can run.
+        rows.push(row(LONGEST_FIRST, (8, 7.5)));
         let told = results(&rows).map(Option::unwrap);
         assert_eq!(told[0], "On 8 cores the best schedule, dynamic, would be 4 times as fast as serial");
         assert_eq!(told[1], "Up to 4 cores, the best schedule turns half of them or more into speedup");

@@ -71,16 +71,29 @@ pub fn claim(option: &str, out: &Path, files: &mut Files) -> Result<()> {
     files.renews(option, &out.join(PAGE), page::is_page)
 }
 
+/// A page that was written.
+pub struct Written {
+    pub path: PathBuf,
+    /// The folders of a class that are not on it, each with the reason.
+    pub left_out: Vec<String>,
+}
+
 /// Draws the figures of every experiment in a folder, or in the folders of a class, and writes `report.html` there; returns
 /// the page's path. The page shows the verdicts on claims; only the verb `claims` writes them into files.
 pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
-    write_page(&sections(lab, out)?, out)
+    Ok(write_told(lab, out)?.path)
 }
 
-/// Like [`write()`], but also writes a page for each experiment, and a list of them, into the folder `pages`; returns the
+/// Like [`write()`], but also tells which folders of a class are not on the page.
+pub fn write_told(lab: &Arc<Lab>, out: &Path) -> Result<Written> {
+    let (sections, left_out) = sections(lab, out)?;
+    Ok(Written { path: write_page(&sections, out)?, left_out })
+}
+
+/// Like [`write_told()`], but also writes a page for each experiment, and a list of them, into the folder `pages`; returns the
 /// list's path. `option` is the option that asked for them. Refuses to replace other files.
-pub fn write_pages(option: &str, lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
-    let mut sections = sections(lab, out)?;
+pub fn write_pages(option: &str, lab: &Arc<Lab>, out: &Path) -> Result<Written> {
+    let (mut sections, left_out) = sections(lab, out)?;
     let folder = out.join(PAGES);
     let index = folder.join(page::INDEX);
     let path = |section: &Section| folder.join(format!("{}.html", section.name));
@@ -100,7 +113,7 @@ pub fn write_pages(option: &str, lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> 
         atomic_file::write(&path(section), |file| file.write_all(html.as_bytes()))?;
     }
     atomic_file::write(&index, |file| file.write_all(page::index(&sections).as_bytes()))?;
-    Ok(index)
+    Ok(Written { path: index, left_out })
 }
 
 fn write_page(sections: &[Section], out: &Path) -> Result<PathBuf> {
@@ -110,34 +123,54 @@ fn write_page(sections: &[Section], out: &Path) -> Result<PathBuf> {
     Ok(page)
 }
 
-/// The sections of a folder, whose figures are drawn.
-fn sections(lab: &Arc<Lab>, out: &Path) -> Result<Vec<Section>> {
-    let (mut sections, mut class) = (Vec::new(), Class::default());
-    let mut add = |folder: &Path, section: Section| {
+/// The sections of a folder, whose figures are drawn, and the folders of a class that are left out.
+fn sections(lab: &Arc<Lab>, out: &Path) -> Result<(Vec<Section>, Vec<String>)> {
+    let (mut sections, mut class) = (Vec::<Section>::new(), Class::default());
+    let add = |sections: &mut Vec<Section>, folder: &Path, section: Section| {
         section.blocks.iter().try_for_each(|block| block.save(&folder.join("figures")))?;
         sections.push(section);
         Ok::<(), Error>(())
     };
     let members = members(out)?;
     let are_many = members.len() > MOST_DRAWN;
+    let (mut left_out, mut first_error) = (class::without_rows(out, &members)?, None);
     for Member { folder, student } in members {
-        let results = Results::read(lab, folder.parent().unwrap_or(out), &folder)?;
-        let blocks = figures::blocks(&results)?;
-        if let Some(student) = &student {
-            class.add(student, &results)?;
-        }
+        let mut drawn = || {
+            let results = Results::read(lab, folder.parent().unwrap_or(out), &folder)?;
+            let blocks = figures::blocks(&results)?;
+            if let Some(student) = &student {
+                class.add(student, &results)?;
+            }
+            Ok::<_, Error>((results, blocks))
+        };
+        let (results, blocks) = match (drawn(), &student) {
+            (Ok(drawn), _) => drawn,
+            (Err(error), None) => return Err(error),
+            // One student's damaged rows are no reason to show nobody's.
+            (Err(error), Some(student)) => {
+                left_out.push(format!("{student} is left out: {error}"));
+                first_error = first_error.or(Some(error));
+                continue;
+            }
+        };
         let own = folder.strip_prefix(out).unwrap_or(&folder);
         let seen = |file: &Path| own.join(file.file_name().unwrap_or_default()).display().to_string();
         let files = vec![seen(&records_path(&folder)), seen(Path::new(MACHINE))];
         let linked_figures = (student.is_some() && are_many).then(|| seen(Path::new("figures")));
         let section = Section { files, linked_figures, ..Section::of(results, blocks) };
-        add(&folder, class::of_student(student.as_deref(), section))?;
+        add(&mut sections, &folder, class::of_student(student.as_deref(), section))?;
+    }
+    if let Some(error) = first_error.filter(|_| class.is_empty()) {
+        return Err(error);
     }
     if let Some(section) = class.section(out) {
-        add(out, section)?;
+        add(&mut sections, out, section)?;
+    }
+    if let Some(section) = sections.last_mut() {
+        section.blocks.splice(0..0, left_out.iter().map(Block::notice));
     }
     for section in [guards::section(out)?, page::bursts::section(out)?].into_iter().flatten() {
-        add(&out.join(&section.name), section)?;
+        add(&mut sections, &out.join(&section.name), section)?;
     }
     if !sections.is_empty() {
         sections.extend(doctor::section(out)?);
@@ -151,7 +184,7 @@ fn sections(lab: &Arc<Lab>, out: &Path) -> Result<Vec<Section>> {
         let problem = "holds no experiment: no folder in it has a records.csv";
         return Err(InputError::new("folder", out.display().to_string(), problem).into());
     }
-    Ok(sections)
+    Ok((sections, left_out))
 }
 
 /// Writes `crops.png` beside the figures of each experiment of a folder that draws the figure `equal-time`; returns the

@@ -171,8 +171,24 @@ impl Results {
 
     /// The trace of a row, if it was kept.
     pub(super) fn trace(&self, row: &Row) -> Result<Option<TraceFile>> {
-        let path = self.folder.join("traces").join(trace_file(&row.cell, row.repetition));
+        let path = self.trace_path(row);
         if path.is_file() { TraceFile::read(&path).map(Some) } else { Ok(None) }
+    }
+
+    fn trace_path(&self, row: &Row) -> PathBuf {
+        self.folder.join("traces").join(trace_file(&row.cell, row.repetition))
+    }
+
+    /// The file with the calibrations of the schedules.
+    pub(super) fn calibration_path(&self) -> PathBuf {
+        self.folder.join("calibration.csv")
+    }
+
+    /// The kept files from which the schedules of a forecast are simulated: calibrations, and traces of serial rows.
+    pub(super) fn files_of_forecasts(&self) -> Vec<PathBuf> {
+        let serial = self.rows().flat_map(Row::runs).filter(|row| row.schedule.is_serial());
+        let files = std::iter::once(self.calibration_path()).chain(serial.map(|row| self.trace_path(row)));
+        files.filter(|path| path.is_file()).collect()
     }
 
     /// The kept images of the rows that `is_wanted` selects, in the order of the rows.

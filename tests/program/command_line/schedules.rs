@@ -102,6 +102,18 @@ fn a_trace_is_replayed_on_other_machines() {
     assert!(!said.contains(PREDICTED), "{said}");
 }
 
+/// Jobs of several workers are replayed all the same.
+#[test]
+fn a_trace_of_several_workers_is_warned_about() {
+    let folder = in_memory();
+    let simulate = ["simulate", "run.csv", "--no-check", "--workers", "2", "--strategies", "shared-counter"];
+    let warned = |strategy: &str, threads: &str| {
+        traced(folder.path(), strategy, threads);
+        run(folder.path(), &simulate).err.contains("warning: this trace is of 2 workers")
+    };
+    assert_eq!((warned("static-cyclic", "2"), warned("serial", "1")), (true, false));
+}
+
 /// A strategy that cannot run on this machine, a thread for each of 19200 pixels, is skipped with a message and
 /// simulated all the same.
 #[test]

@@ -115,7 +115,7 @@ impl Verb {
             Self::Artifact(arguments) => artifact::run(&arguments, lab),
             Self::Contract(arguments) => contract::run(&arguments, lab),
             Self::Grade(arguments) => grade::run(&arguments, lab, console),
-            Self::Report(arguments) => report::run(&arguments, lab),
+            Self::Report(arguments) => report::run(&arguments, lab, console),
             Self::Simulate(arguments) => simulate::run(&arguments, lab, console),
             Self::Image(what) => what.run(lab, console),
             Self::Inspect(what) => what.run(lab, console),

@@ -26,8 +26,9 @@ pub(crate) struct Arguments {
     latex: bool,
 }
 
-/// The meaning of order and letters.
-const RULE: &str = "The order is that of the times within the same repetitions, and each ratio is to the first schedule. Schedules that \
+/// The meaning of places, ratios and letters.
+const RULE: &str = "The place is decided by the median of a schedule's times, each divided by the median time of its repetition. \
+The ratios to the first schedule are of these two alone, so they may order neighbours in another way. Schedules that \
 share a letter cannot be told apart; all other orders hold together with 95 % confidence.";
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
@@ -71,7 +72,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
 }
 
 fn latex(image: &ImageRanking) -> String {
-    let heads = ["schedule", "ratio", "interval", "median", "groups"].map(str::to_string);
+    let heads = ["schedule", "time / first", "interval", "median", "groups"].map(str::to_string);
     let row = |place: &Place| {
         let [ratio, interval, median, groups, _] = cells(place);
         vec![place.schedule.clone(), ratio, interval, median, groups]
@@ -82,17 +83,17 @@ fn latex(image: &ImageRanking) -> String {
 
 fn table(image: &ImageRanking) -> String {
     let width = image.places.iter().map(|place| letters(&place.groups).len()).max().unwrap_or(0).max("groups".len());
-    let head = format!("{:>8} {:>16} {:>11}  {:width$}  schedule", "ratio", "interval", "median", "groups");
+    let head = format!("{:>12} {:>16} {:>11}  {:width$}  schedule", "time / first", "interval", "median", "groups");
     let line = |place: &Place| {
         let [ratio, interval, median, groups, schedule] = cells(place);
-        format!("{ratio:>8} {interval:>16} {median:>11}  {groups:width$}  {schedule}")
+        format!("{ratio:>12} {interval:>16} {median:>11}  {groups:width$}  {schedule}")
     };
     let lines = [title(image), head].into_iter().chain(image.places.iter().map(line));
     lines.chain([fastest(image)]).collect::<Vec<_>>().join("\n")
 }
 
 fn in_markdown(image: &ImageRanking) -> String {
-    let heads = ["ratio", "interval", "median", "groups", "schedule"];
+    let heads = ["time / first", "interval", "median", "groups", "schedule"];
     let table = markdown::table(heads, image.places.iter().map(cells));
     format!("### {}\n\n{table}\n\n{}", title(image), fastest(image))
 }

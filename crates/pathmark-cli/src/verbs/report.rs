@@ -20,7 +20,7 @@ pub(crate) struct Arguments {
     paper: Option<PathBuf>,
 }
 
-pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> Result<()> {
     let Arguments { folder, crops, pages, paper } = arguments;
     let crops = crops.iter().map(|crop| Crop::parse(crop)).collect::<Result<Vec<Crop>>>()?;
     let mut files = Files::default();
@@ -34,8 +34,11 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
         }
     }
     let mut written = if crops.is_empty() { Vec::new() } else { report::write_crops(lab, folder, &crops)? };
-    let page = if *pages { report::write_pages("pages", lab, folder)? } else { report::write(lab, folder)? };
-    written.insert(0, page);
+    let page = if *pages { report::write_pages("pages", lab, folder)? } else { report::write_told(lab, folder)? };
+    for reason in &page.left_out {
+        console.note(&format!("warning: {reason}"));
+    }
+    written.insert(0, page.path);
     if let Some(paper) = paper {
         report::write_paper(lab, folder, paper)?;
         written.push(paper.clone());

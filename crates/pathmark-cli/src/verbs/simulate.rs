@@ -63,6 +63,14 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, console: &Console) -> R
     if let Some(doubt) = trace.doubt() {
         console.note(&doubt);
     }
+    // Threads that share a processor wait for it within their jobs.
+    if trace.header.workers > 1 {
+        console.note(&format!(
+            "warning: this trace is of {} workers, so its jobs may contain waiting; a serial trace (render --strategy serial) \
+             forecasts better",
+            trace.header.workers
+        ));
+    }
     let costs: Vec<Vec<f64>> = traces.iter().map(TraceFile::costs_s).collect();
     // A strategy that is named twice is one.
     let mut named: Vec<String> = Vec::new();

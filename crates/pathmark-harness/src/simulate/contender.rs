@@ -29,12 +29,15 @@ pub enum Order {
     LongestFirst,
 }
 
+/// The name of [`Contender::longest_first`].
+pub const LONGEST_FIRST: &str = "longest-first";
+
 impl Contender {
     /// The longest job first, one at a time, at no cost (LPT; Graham 1969). No strategy of the table can do that, since
     /// none knows the costs beforehand: this contender shows the value of knowing them.
     pub fn longest_first() -> Self {
         Self {
-            name: "longest-first".to_owned(),
+            name: LONGEST_FIRST.to_owned(),
             discipline: Discipline::Chunks(ChunkRule { size: |_| 1, parameter: 1 }),
             order: Order::LongestFirst,
             overheads: Overheads::default(),

@@ -29,7 +29,7 @@ mod prediction;
 mod ranks;
 mod replay;
 
-pub use contender::{Contender, Order, contenders};
+pub use contender::{Contender, LONGEST_FIRST, Order, contenders};
 pub use forecast::{Bounds, Forecast, bounds, forecast, longest_first, typical_costs};
 pub use hardware::Hardware;
 pub use inflation::{BusyRatio, WorkInflation};

@@ -36,7 +36,7 @@ use again::{Cost, costs, folder_of};
 use appendix::{Appendix, Experiment};
 use metadata::{METADATA, files_below, look_at};
 use recipes::Program;
-use runs::{Run, add_tables, experiments_in, folders_in, plain, runs_of};
+use runs::{Run, add_evidence, experiments_in, folders_in, plain, runs_of};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File, OpenOptions};
@@ -126,9 +126,9 @@ pub fn write(lab: &Arc<Lab>, request: &Request<'_>) -> Result<Written> {
     };
     let mut runs = runs_of(folders)?;
     let experiments = read_experiments(lab, &runs)?;
-    let answers = judge(lab, &reports, folders)?;
-    first_of(&answers)?;
-    add_tables(&mut runs, &answers)?;
+    let of_sources = judge(lab, &reports, folders)?;
+    first_of(&of_sources)?;
+    add_evidence(lab, &mut runs, &of_sources)?;
     let date = today()?;
 
     create_folder("archive", archive)?;
@@ -145,6 +145,7 @@ pub fn write(lab: &Arc<Lab>, request: &Request<'_>) -> Result<Written> {
     let begun = Instant::now();
     let mut answers = judge(lab, &reports, &copies)?;
     let judge_s = begun.elapsed().as_secs_f64();
+    check_complete(&of_sources, &answers)?;
     writer.put(VERDICTS, &verdicts(&reports, &answers, archive))?;
     shorten(&mut answers, archive);
     csv_file::write(&archive.join(CLAIMS), answers.iter().map(Stated::of))?;
@@ -181,6 +182,16 @@ pub fn write(lab: &Arc<Lab>, request: &Request<'_>) -> Result<Written> {
     let files = listed_below(archive)?;
     writer.put(METADATA, &metadata::text(&files, citation, &appendix.summary(), &date, &program))?;
     Ok(Written { files: files.len() + 1, bytes: files.iter().map(|file| file.bytes).sum() })
+}
+
+/// Refuses an archive whose files give another verdict than the folders that it was made of.
+fn check_complete(of_sources: &[Answer<'_>], answers: &[Answer<'_>]) -> Result<()> {
+    let found: BTreeMap<u32, Verdict> = answers.iter().map(|answer| (answer.claim.id, answer.verdict)).collect();
+    let is_other = |own: &&Answer<'_>| found.get(&own.claim.id) != Some(&own.verdict);
+    let Some(own) = of_sources.iter().find(is_other) else { return Ok(()) };
+    let told = found.get(&own.claim.id).map_or_else(|| "no verdict".to_string(), Verdict::to_string);
+    let (id, verdict) = (own.claim.id, own.verdict);
+    Err(Error::Check(format!("claim {id}: the folders give {verdict}, their files in the archive {told}")))
 }
 
 /// Refuses a folder that holds anything.

@@ -4,8 +4,11 @@ use crate::claims::Answer;
 use crate::error::{InputError, Result};
 use crate::experiment::{DOCTOR, MACHINE, has_records, records_path};
 use crate::files::entries;
+use crate::lab::Lab;
+use crate::results::Results;
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
 
 /// Files beside rows that explain them.
 const BESIDE: [&str; 2] = [MACHINE, "experiment.toml"];
@@ -102,13 +105,20 @@ fn simple(name: &str) -> String {
     if name.trim_matches('-').is_empty() { "rows".to_string() } else { name }
 }
 
-/// Adds the tables that answer claims.
-pub(super) fn add_tables(runs: &mut [Run], answers: &[Answer<'_>]) -> Result<()> {
-    for source in answers.iter().flat_map(|answer| &answer.sources) {
-        // A folder of rows may lie in another one.
-        let owners = runs.iter_mut().filter(|run| source.starts_with(&run.folder));
-        let nearest = owners.max_by_key(|run| run.folder.components().count());
-        nearest.ok_or_else(|| outside(source))?.take(source)?;
+/// Adds the tables that answer claims, and the files beside rows from which forecasts are simulated.
+pub(super) fn add_evidence(lab: &Arc<Lab>, runs: &mut [Run], answers: &[Answer<'_>]) -> Result<()> {
+    for answer in answers {
+        for source in &answer.sources {
+            // A folder of rows may lie in another one.
+            let owners = runs.iter_mut().filter(|run| source.starts_with(&run.folder));
+            let run = owners.max_by_key(|run| run.folder.components().count()).ok_or_else(|| outside(source))?;
+            run.take(source)?;
+            if let Some(folder) = source.parent().filter(|_| answer.is_of_forecast()) {
+                for file in Results::open(lab, folder)?.files_of_forecasts() {
+                    run.take(&file)?;
+                }
+            }
+        }
     }
     Ok(())
 }

@@ -9,7 +9,7 @@ use super::definition::{Claim, Report, Test};
 use super::measure::{Evidence, Item, Query, measure};
 use super::measurement::Measurement;
 use super::places::Part as Place;
-use super::statistic::{Cases, GuardColumn, GuardValue, Statistic};
+use super::statistic::{Cases, GuardColumn, GuardValue, Kind, Statistic};
 use super::verdict::Verdict;
 use crate::cases_file::{self, CaseRow};
 use crate::error::InputError;
@@ -70,6 +70,12 @@ impl Answer<'_> {
 
     pub(super) fn may_be_unanswered(&self) -> bool {
         self.claim.expected_verdicts().any(|name| name == Verdict::NotAnswered.name())
+    }
+
+    /// Whether the claim is about simulated schedules, which need calibrations and traces beside the rows.
+    pub(crate) fn is_of_forecast(&self) -> bool {
+        let statistic = self.claim.test().map(|test| &test.statistic);
+        matches!(statistic, Ok(Statistic::OfRows { kind: Kind::Forecast { .. }, .. }))
     }
 
     pub(super) fn is_judged(&self) -> bool {

@@ -120,7 +120,7 @@ impl Evidence {
         level: f64,
     ) -> Result<Option<Measurement>> {
         let Some(results) = &self.results else { return Ok(None) };
-        let path = results.folder.join("calibration.csv");
+        let path = results.calibration_path();
         if !path.is_file() {
             return Ok(None);
         }

@@ -1,11 +1,11 @@
 //! Simulated schedules of the jobs measured here on other machines, and the errors of the predictions for this machine.
 
 use crate::experiment::read_calibration;
-use crate::forecasts::{band, forecast_blocks, prediction_blocks, predictions};
+use crate::forecasts::{band, best, forecast_blocks, prediction_blocks, predictions};
 use crate::measure::{THREAD_PER_ROW, TraceFile};
 use crate::plot::number::{between, short};
 use crate::prelude::*;
-use crate::simulate::{Contender, Forecast, Hardware, contenders, forecast, typical_costs};
+use crate::simulate::{Contender, Forecast, Hardware, LONGEST_FIRST, contenders, forecast, typical_costs};
 use std::num::NonZeroUsize;
 
 #[derive(Deserialize, Default)]
@@ -23,7 +23,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Options { cores, decomposition } = options(&results.definition, "forecast")?;
     let cores = cores.map_or(CORES.to_vec(), |cores| cores.into_iter().map(NonZeroUsize::get).collect());
     let decomposition = decomposition.unwrap_or_else(|| "rows".to_string());
-    let path = results.folder.join("calibration.csv");
+    let path = results.calibration_path();
     if !path.is_file() {
         return Ok(vec![Block::notice("There is no calibration.csv, so nothing can be simulated.")]);
     }
@@ -54,10 +54,13 @@ fn claim(rows: &[Forecast], costs: &[f64]) -> Option<[Block; 2]> {
     let largest = rows.iter().map(|row| row.workers).max()?;
     let at = |cores: usize| rows.iter().find(|row| row.strategy == "thread-per-job" && row.workers == cores);
     let (two, sixteen, all) = (at(2)?, at(16)?, at(largest)?);
-    let best = rows.iter().filter(|row| row.workers == largest);
-    let best = best.max_by(|a, b| a.speedup.value.total_cmp(&b.speedup.value))?;
+    let best = best(rows, largest)?;
+    let yardstick = rows.iter().find(|row| row.strategy == LONGEST_FIRST && row.workers == largest);
     let mean = costs.iter().sum::<f64>() / costs.len() as f64;
     let told = |row: &Forecast| short(row.speedup.value, 3) + &between(Estimated::from(row.speedup).bar(), 3);
+    let yardstick = yardstick.map_or_else(String::new, |row| {
+        format!(" The yardstick {LONGEST_FIRST}, which knows all costs beforehand, reaches {}.", told(row))
+    });
     let text = format!(
         "On {largest} cores a thread for each row would be {} times as fast as serial, and the best schedule, {}, {} times. Simulated.",
         told(all),
@@ -68,7 +71,7 @@ fn claim(rows: &[Forecast], costs: &[f64]) -> Option<[Block; 2]> {
     let answer = Block::Answer { text, stem: "forecast-speedup", is_told: is_narrow(all) && is_narrow(best) };
     let finding = Block::finding(format!(
         "Simulated, with intervals of {:.0} % confidence: {THREAD_PER_ROW} (a thread for each of {} rows) would be {} times as fast as serial on 2 cores, {} times on 16 and {} times on {largest}, not {largest}: the longest row takes {:.2} times the mean ({:.2} times the \
-         median), which alone allows no more than {:.0}, and threads are started one after the other. The best of all schedules on {largest} cores, {}, reaches {}. {}",
+         median), which alone allows no more than {:.0}, and threads are started one after the other. The best schedule on {largest} cores, {}, reaches {}.{yardstick} {}",
         100.0 * LEVEL,
         costs.len(),
         told(two),

@@ -68,6 +68,15 @@ impl Line<'_> {
         MeasuredPrice::of(&self.seeds, &times.collect::<Vec<Timed>>(), goal)
     }
 
+    /// Why it has no price, in words.
+    fn without_price(&self) -> String {
+        let has_one_seed = (self.seeds.len() == 1).then_some("one seed");
+        let is_partial = self.points.iter().all(|point| point.seconds.is_partial);
+        let reasons = [has_one_seed, is_partial.then_some("fewer processes than other lines")];
+        let known = joined(reasons.into_iter().flatten().map(str::to_string));
+        if known.is_empty() { "no error of every seed with a time".to_string() } else { known }
+    }
+
     /// The factor on the seconds that halves the error, from the line's ends.
     fn cost_of_half(&self) -> Option<f64> {
         let (first, last) = (self.points.first()?, self.points.last()?);
@@ -212,7 +221,7 @@ fn prices(lines: &[Line<'_>]) -> Block {
         Some(MeasuredPrice::Between(found)) => Some(Estimated::of(found.seconds, found.interval)),
         _ => None,
     };
-    let place = |price: &Option<MeasuredPrice>| match price {
+    let place = |line: &Line<'_>, price: &Option<MeasuredPrice>| match price {
         Some(MeasuredPrice::Between(Crossing { between: [low, high], .. })) => format!("between {low} and {high} spp"),
         Some(MeasuredPrice::BeforeFirst(at)) => {
             format!("not measured: reached before {} spp, {:.4} s", at.spp, at.seconds)
@@ -220,7 +229,7 @@ fn prices(lines: &[Line<'_>]) -> Block {
         Some(MeasuredPrice::BeyondLast(at)) => {
             format!("not measured: not reached at {} spp, {:.4} s", at.spp, at.seconds)
         }
-        None => "not measured".to_string(),
+        None => format!("not measured: {}", line.without_price()),
     };
     Block::table("accuracy-prices", "Seconds to an error, interpolated between measured points", all)
         .column("scene", |(line, ..)| line.of.setting.0.to_string())
@@ -228,7 +237,7 @@ fn prices(lines: &[Line<'_>]) -> Block {
         .number("RMSE", Significant(3), |(_, goal, _)| *goal)
         .estimated("seconds", Significant(4), |(.., price)| seconds(price))
         .number("seeds", Decimals(0), |(line, ..)| line.seeds.len() as f64)
-        .column("measured", |(.., price)| place(price))
+        .column("measured", |(line, _, price)| place(line, price))
         .end()
 }
 
@@ -279,6 +288,20 @@ mod tests {
         let [only] = &findings[..] else { panic!("{findings:?}") };
         assert!(only.starts_with("cornell: an RMSE of ") && only.ends_with(", measured."), "{only}");
         assert_eq!(only.matches(" s (").count(), 1, "{only}");
+    }
+
+    /// Serial runs of one of nine seeds, in one of nine processes: their times are not compared with the others'.
+    #[test]
+    fn a_line_without_prices_tells_why() {
+        let mut rows = closed_form();
+        rows.retain(|row| row.threads == 2 || row.seed == 1);
+        for row in &mut rows {
+            row.repetition = row.seed as u32;
+        }
+        let results = results(&["rmse-against-time"], "", rows).unwrap();
+        let prices: Vec<Vec<String>> = table(&blocks(&results).unwrap()).rows().collect();
+        let serial = prices.iter().find(|row| row[0] == "cornell" && row[1].contains("serial")).unwrap();
+        assert_eq!(serial[5], "not measured: one seed, fewer processes than other lines");
     }
 
     #[test]
