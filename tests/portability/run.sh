@@ -70,8 +70,13 @@ prepare() {
     if [ ! -e "$base/installed-$debian" ]; then
         within dpkg --add-architecture "$debian"
         within apt-get update
-        within apt-get install -y --no-install-recommends rustc cargo git qemu-user gcc libc6-dev \
-            "libstd-rust-dev:$debian" "gcc-$tools" "libc6-dev-$debian-cross"
+        within apt-get install -y --no-install-recommends rustc cargo git qemu-user gcc libc6-dev "gcc-$tools" "libc6-dev-$debian-cross"
+        # Rust's library is only unpacked. An installed one needs LLVM for both processors in the same version, which sid lacks at times.
+        within bash -euo pipefail -c '
+            cd "$(mktemp -d)"
+            apt-get download "libstd-rust-dev:$0=$(dpkg-query --show --showformat "\${Version}" rustc)"
+            dpkg --extract libstd-rust-dev_*.deb /
+        ' "$debian"
         touch "$base/installed-$debian"
     fi
     within git config --global --replace-all safe.directory "$repository"
