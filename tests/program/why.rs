@@ -3,6 +3,7 @@
 use crate::diff::{json, run};
 use crate::experiment::{TINY, write_tiny};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::fs;
 
 #[test]
@@ -34,7 +35,8 @@ fn the_parts_of_a_real_sweep_add_up_within_their_intervals() {
         assert!(folder.path().join("out/tiny/figures").join(file).is_file(), "{file}");
     }
     // The commands that it prints run one after the other, and so do those for the rows that they make.
-    let remedies = |schedules: &[Value]| -> Vec<String> {
+    // Two schedules may have the same remedy.
+    let remedies = |schedules: &[Value]| -> BTreeSet<String> {
         let all = schedules.iter().filter_map(|own| own["remedy"]["command"].as_str());
         all.filter_map(|command| Some(command.split_once(' ')?.1.to_string())).collect()
     };

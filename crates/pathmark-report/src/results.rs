@@ -82,7 +82,7 @@ impl Results {
         if self.run.until.is_some() { Stopping::Sequential } else { Stopping::Fixed }
     }
 
-    /// Doubts about the times of the file's rows that did not fail; [`Results::rows`] has the pairs of a process as one.
+    /// Doubts about the times of the file's rows that did not fail. Figures have the pairs of a process as one row.
     pub fn doubts(&self) -> TimingConcerns {
         self.doubts
     }
