@@ -173,11 +173,12 @@ impl<'a> Remedies<'a> {
         let asked = if asked.starts_with('-') { format!("./{asked}") } else { asked.clone() };
         let profile = Profile::from_name(&run.profile).unwrap_or(Profile::Quick);
         let value = |name: &str, own: String| changes.iter().find(|(of, _)| *of == name).map_or(own, |of| of.1.clone());
-        let schedule = ["strategy", "threads", "decomposition"].map(|name| match name {
-            "strategy" => (name, value(name, row.strategy.clone())),
-            "threads" => (name, value(name, row.threads.to_string())),
-            _ => (name, value(name, row.decomposition.clone())),
-        });
+        let own = [
+            ("strategy", row.strategy.clone()),
+            ("threads", row.threads.to_string()),
+            ("decomposition", row.decomposition.clone()),
+        ];
+        let schedule = own.map(|(name, own)| (name, value(name, own)));
         let others = changes.iter().filter(|(name, _)| !schedule.iter().any(|(own, _)| own == name)).cloned();
         let tried: Vec<Change> = schedule.iter().cloned().chain(others).collect();
         // Rows are never overwritten, so each remedy has a folder of its own.

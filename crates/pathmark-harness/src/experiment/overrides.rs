@@ -49,7 +49,7 @@ impl Definition {
             if matches!(&found, [Ok(here), Ok(beside)] if here.is_file() && here != beside) {
                 let problem = "is one file here and another one beside the experiment";
                 return Err(InputError::new("scene", scene, problem)
-                    .allowed("a path from /, or of one of them")
+                    .allowed("a path from the root, or one that leads to one file only")
                     .into());
             }
         }

@@ -5,8 +5,8 @@ mod text;
 mod toml_text;
 
 pub use numbers::{
-    albedo, array, coordinate_limit, degrees, direction, exactly, field_of_view, length, optional_array, out_of_range,
-    point, positive, radiance, refractive_index, roughness, share,
+    albedo, array, coordinate_limit, degrees, direction, field_of_view, length, optional_array, out_of_range, point,
+    positive, radiance, refractive_index, roughness, share,
 };
 pub use text::{BYTE_ORDER_MARK, Limits, Text, open_text, read_text, read_text_up_to, unreadable};
 pub use toml_text::parse_within;

@@ -34,8 +34,9 @@ fn checked_triple<'de, D: Deserializer<'de>>(
 pub fn array<'de, T: Deserialize<'de>, D: Deserializer<'de>, const N: usize>(
     deserializer: D,
 ) -> Result<[T; N], D::Error> {
-    let values = Vec::<T>::deserialize(deserializer)?;
-    exactly(values)
+    let values = Vec::deserialize(deserializer)?;
+    let count = values.len();
+    values.try_into().map_err(|_: Vec<T>| D::Error::invalid_length(count, &format!("an array of length {N}").as_str()))
 }
 
 /// Reads exactly `N` values, where a key may be left out.
@@ -43,12 +44,6 @@ pub fn optional_array<'de, T: Deserialize<'de>, D: Deserializer<'de>, const N: u
     deserializer: D,
 ) -> Result<Option<[T; N]>, D::Error> {
     array(deserializer).map(Some)
-}
-
-/// Returns the values as an array, or the error for their number.
-pub fn exactly<T, E: Error, const N: usize>(values: Vec<T>) -> Result<[T; N], E> {
-    let count = values.len();
-    values.try_into().map_err(|_| E::invalid_length(count, &format!("an array of length {N}").as_str()))
 }
 
 /// Whether a coordinate is within bounds; false for NaN.
