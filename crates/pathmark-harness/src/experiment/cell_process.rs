@@ -176,7 +176,7 @@ impl CellJob {
             if !self.stays || self.settings.time_limit_s.is_some() {
                 return Ok(vec![row]);
             }
-            let runs = batch_runs(outcome.makespan_s);
+            let runs = batch_runs(outcome.makespan_s, self.settings.is_serial());
             let row = batch(&setup, runs, row)?;
             *kept = Some(Kept { setup, runs, first: row.clone() });
             return Ok(vec![row]);

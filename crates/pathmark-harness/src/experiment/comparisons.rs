@@ -137,6 +137,23 @@ impl Comparisons {
         wanted.map(|index| all[index].clone()).collect()
     }
 
+    /// The comparisons, each over all of its seeds: two cells of another seed are other processes of the same comparison.
+    pub(super) fn over_seeds(&self, cells: &[Cell]) -> Vec<Vec<Comparison>> {
+        let settings = |index: usize| {
+            SETTINGS.iter().filter(|own| own.name != "seed").map(|own| cells[index].shown(own)).collect::<Vec<_>>()
+        };
+        let mut places = BTreeMap::new();
+        let mut found: Vec<Vec<Comparison>> = Vec::new();
+        for pair in &self.pairs {
+            let place = *places.entry([pair.what, pair.with].map(settings)).or_insert(found.len());
+            if place == found.len() {
+                found.push(Vec::new());
+            }
+            found[place].push(*pair);
+        }
+        found
+    }
+
     /// The groups of cells that are connected by comparisons, each in the order of the cells.
     pub(super) fn groups(&self, cells: usize) -> Vec<Vec<usize>> {
         let mut group_of: Vec<usize> = (0..cells).collect();

@@ -162,7 +162,7 @@ impl Sweep<'_> {
             // A process of pairs runs its cell once before it counts, unless that takes long.
             let (rows, runs) = if side_by_side.contains(&index) {
                 let pairs = affordable(self.pairs()?, run_s);
-                (pairs, pairs * batch_runs(run_s) + u32::from(run_s < LONG_S))
+                (pairs, pairs * batch_runs(run_s, cell.settings.is_serial()) + u32::from(run_s < LONG_S))
             } else {
                 (1, 1)
             };

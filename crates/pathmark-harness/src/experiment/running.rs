@@ -210,11 +210,13 @@ impl<'a> Running<'a> {
 
     /// The comparisons whose interval is wider than their goal, in words.
     pub(super) fn missed_goals(&self) -> Option<String> {
-        let (cells, pairs) = (&self.sweep.cells, &self.sweep.comparisons.pairs);
-        let missed = pairs.iter().filter_map(|Comparison { what, with, goal }| {
-            let ([what, with], goal) = ([&cells[*what], &cells[*with]], (*goal)?);
-            let half = self.decisions.paired(&what.id, &with.id).map_or(f64::INFINITY, |found| half_width(&found));
-            (half > goal).then_some((half, goal, what, with))
+        let (cells, comparisons) = (&self.sweep.cells, self.sweep.comparisons.over_seeds(&self.sweep.cells));
+        let missed = comparisons.iter().filter_map(|seeds| {
+            let Comparison { what, with, goal } = seeds.first()?;
+            let ids = |pair: &Comparison| (cells[pair.what].id.as_str(), cells[pair.with].id.as_str());
+            let found = self.decisions.paired(&seeds.iter().map(ids).collect::<Vec<_>>(), u32::MAX);
+            let (half, goal) = (found.map_or(f64::INFINITY, |found| half_width(&found)), (*goal)?);
+            (half > goal).then_some((half, goal, &cells[*what], &cells[*with]))
         });
         let mut missed: Vec<_> = missed.collect();
         missed.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -226,7 +228,7 @@ impl<'a> Running<'a> {
         Some(format!(
             "{} of {} comparisons missed their precision; the widest is {} over {} on {}: {width} instead of ±{:.1} %",
             missed.len(),
-            pairs.iter().filter(|pair| pair.goal.is_some()).count(),
+            comparisons.iter().filter(|seeds| seeds[0].goal.is_some()).count(),
             told(what),
             told(with),
             what.settings.scene,

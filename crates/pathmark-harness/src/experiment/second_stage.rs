@@ -41,9 +41,9 @@ impl SecondStage {
     }
 }
 
-/// The processes that a comparison needs, from those of its first stage; `None` if these suffice or tell nothing.
-fn needed(decisions: &Decisions, (what, with): (&str, &str), goal: f64, first: u32) -> Option<u32> {
-    let found = decisions.paired_before(what, with, first)?;
+/// The processes that a comparison needs for each seed, from those of its first stage; `None` if these suffice or tell nothing.
+fn needed(decisions: &Decisions, seeds: &[(&str, &str)], goal: f64, first: u32) -> Option<u32> {
+    let found = decisions.paired(seeds, first)?;
     let times_goal = half_width(&found) / goal;
     let missing = times_goal * times_goal - 1.0;
     (missing > 0.0).then(|| (f64::from(first) * (1.0 + (1.0 + RESERVE) * missing)).ceil() as u32)
@@ -66,15 +66,16 @@ impl Sweep<'_> {
     ) -> Result<()> {
         let mut wanted = vec![first; self.cells.len()];
         let mut missed = 0;
-        for pair in &self.comparisons.pairs {
-            let ids = (self.cells[pair.what].id.as_str(), self.cells[pair.with].id.as_str());
+        for seeds in self.comparisons.over_seeds(&self.cells) {
+            let cells: Vec<usize> = seeds.iter().flat_map(|pair| [pair.what, pair.with]).collect();
+            let id = |index: usize| self.cells[index].id.as_str();
+            let ids: Vec<(&str, &str)> = seeds.iter().map(|pair| (id(pair.what), id(pair.with))).collect();
             // A cell of fewer repetitions than the profile's has them by its matrix.
-            let is_limited = [pair.what, pair.with].iter().any(|index| self.cells[*index].at_most.is_some());
-            let needed =
-                pair.goal.filter(|_| !is_limited).and_then(|goal| needed(running.decisions(), ids, goal, first));
-            let Some(needed) = needed else { continue };
+            let is_limited = cells.iter().any(|index| self.cells[*index].at_most.is_some());
+            let goal = seeds[0].goal.filter(|_| !is_limited);
+            let Some(needed) = goal.and_then(|goal| needed(running.decisions(), &ids, goal, first)) else { continue };
             missed += 1;
-            for index in [pair.what, pair.with] {
+            for index in cells {
                 wanted[index] = wanted[index].max(needed.min(stage.at_most));
             }
         }
@@ -130,9 +131,9 @@ mod tests {
                 }
             };
             run(&mut decisions, 0..16);
-            let processes = needed(&decisions, ("what", "with"), goal, 16).map_or(16, |needed| needed.min(200));
+            let processes = needed(&decisions, &[("what", "with")], goal, 16).map_or(16, |needed| needed.min(200));
             run(&mut decisions, 16..processes);
-            let found = decisions.paired("what", "with").unwrap();
+            let found = decisions.paired(&[("what", "with")], u32::MAX).unwrap();
             sums[0] += f64::from(found.ratio.interval.low <= 1.0 && 1.0 <= found.ratio.interval.high);
             sums[1] += f64::from(half_width(&found) <= goal);
             sums[2] += f64::from(processes);

@@ -176,22 +176,21 @@ impl Decisions {
         median(&values).zip(median_sequence(&values, LEVEL)).is_some_and(|found| width(found) <= 2.0 * limit)
     }
 
-    /// The ratio of two cells that run side by side.
-    pub(super) fn paired(&self, what: &str, with: &str) -> Option<PairedRatio> {
-        self.paired_before(what, with, u32::MAX)
-    }
-
-    /// [`Self::paired`], from the processes below a number.
-    pub(super) fn paired_before(&self, what: &str, with: &str, end: u32) -> Option<PairedRatio> {
-        let [[_, what], [_, with]] = [self.times.get(what)?, self.times.get(with)?];
-        let ratios = ratios_in_pairs(what, with).into_iter().filter(|(process, _)| *process < end);
-        paired_ratio(&by_process(ratios), LEVEL)
+    /// The ratio of two cells that run side by side, of each seed; from the processes below a number.
+    pub(super) fn paired(&self, seeds: &[(&str, &str)], end: u32) -> Option<PairedRatio> {
+        let mut processes = Vec::new();
+        for (what, with) in seeds {
+            let [[_, what], [_, with]] = [self.times.get(*what)?, self.times.get(*with)?];
+            let ratios = ratios_in_pairs(what, with).into_iter().filter(|(process, _)| *process < end);
+            processes.extend(by_process(ratios));
+        }
+        paired_ratio(&processes, LEVEL)
     }
 
     /// Whether the ratio of two cells that run side by side is known to within the limit, or cannot be known.
     pub(super) fn is_paired(&self, what: &str, with: &str, limit: f64) -> bool {
         let is_without = [what, with].iter().any(|cell| self.without_time.contains(*cell));
-        is_without || self.paired(what, with).is_some_and(|found| half_width(&found) <= limit)
+        is_without || self.paired(&[(what, with)], u32::MAX).is_some_and(|found| half_width(&found) <= limit)
     }
 
     /// Which cells are open, image by image. For the fastest schedule, a cell is open until another one is known to be

@@ -2,17 +2,19 @@
 //! interruption then weigh less. The start of a schedule's threads weighs as before: each run has its own.
 
 use super::Record;
-use super::run::SHORTEST_S;
+use super::run::shortest_s;
 use super::warning::Warning;
+use crate::lab::SERIAL;
 
-/// Seconds of a batch: above the shortest by a margin, since the machine may get faster.
-const BATCH_S: f64 = 1.5 * SHORTEST_S;
+/// The duration of a batch over that of the shortest run: a margin, since the machine may get faster.
+const MARGIN: f64 = 1.5;
 /// Most runs of a batch: a run may take no time that the clock can show.
 const MOST: f64 = 1000.0;
 
 /// The number of runs for a batch, if one of them takes that many seconds.
-pub fn batch_runs(run_s: f64) -> u32 {
-    if run_s >= BATCH_S { 1 } else { (BATCH_S / run_s).ceil().min(MOST) as u32 }
+pub fn batch_runs(run_s: f64, is_serial: bool) -> u32 {
+    let batch_s = MARGIN * shortest_s(is_serial);
+    if run_s >= batch_s { 1 } else { (batch_s / run_s).ceil().min(MOST) as u32 }
 }
 
 impl Record {
@@ -31,7 +33,8 @@ impl Record {
             idle_between_jobs_s idle_before_first_job_s idle_tail_s job_min_s job_median_s job_max_s voluntary_switches
             involuntary_switches other_cpu_s steal_s migrations cycles instructions cache_misses branch_misses
         }
-        if batch.makespan_s.is_some_and(|run_s| run_s * rows.len() as f64 >= SHORTEST_S) {
+        let shortest_s = shortest_s(first.strategy == SERIAL && first.ranks.is_none());
+        if batch.makespan_s.is_some_and(|run_s| run_s * rows.len() as f64 >= shortest_s) {
             let short = Warning::TooShort.to_string();
             let others: Vec<&str> = first.warnings.split(';').filter(|warning| *warning != short).collect();
             batch.warnings = others.join(";");
@@ -62,10 +65,10 @@ mod tests {
 
     #[test]
     fn a_batch_lasts_as_long_as_can_be_timed() {
-        assert_eq!(
-            [1.0, 0.05, 7.5e-3, 7.4e-3, 4.9e-3, 1e-3, 1e-9, 0.0].map(batch_runs),
-            [1, 1, 1, 2, 2, 8, 1000, 1000]
-        );
+        let runs =
+            |is_serial| [1.0, 0.05, 7.5e-3, 7.4e-3, 3e-3, 1e-3, 1e-9, 0.0].map(|run_s| batch_runs(run_s, is_serial));
+        assert_eq!(runs(false), [1, 1, 1, 2, 3, 8, 1000, 1000]);
+        assert_eq!(runs(true), [1, 1, 1, 1, 1, 3, 1000, 1000]);
     }
 
     #[test]
@@ -76,6 +79,9 @@ mod tests {
         assert_eq!(batch.warnings, "biased");
         let short = Record::of_batch(&[run(0.001)]).unwrap();
         assert_eq!((short.makespan_s, short.warnings.as_str()), (Some(0.001), "biased;too-short"));
+        let serial = |makespan_s| Record { strategy: SERIAL.to_string(), ..run(makespan_s) };
+        assert_eq!(Record::of_batch(&[serial(0.001), serial(0.001)]).unwrap().warnings, "biased");
+        assert_eq!(Record::of_batch(&[run(0.001), run(0.001)]).unwrap().warnings, "biased;too-short");
     }
 
     #[test]

@@ -44,8 +44,8 @@ settings_list!(columns {
         pub pair: Option<u32>,
         /// Place in the pair, from 0: how many of the compared cells ran before this one.
         pub place: Option<u32>,
-        /// Runs that followed each other in this place of the pair. Runs of less than 5 ms are repeated; times and counters
-        /// are then means over them. Empty outside of pairs.
+        /// Runs that followed each other in this place of the pair. Runs of less than 7.5 ms, serial ones of less than 3 ms, are
+        /// repeated; times and counters are then means over them. Empty outside of pairs.
         pub runs: Option<u32>,
         /// Position in the order in which the sweep ran.
         pub run_order: u64,

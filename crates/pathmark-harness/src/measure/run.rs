@@ -22,8 +22,12 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// In shorter runs, the start of threads and single interruptions weigh more than the schedule.
-pub(super) const SHORTEST_S: f64 = 5e-3;
+/// Seconds of a run below which the start of threads and single interruptions weigh more than the schedule. A serial run
+/// starts no thread.
+pub(super) fn shortest_s(is_serial: bool) -> f64 {
+    if is_serial { 2e-3 } else { 5e-3 }
+}
+
 /// The system counts in hundredths of a second, once for each processor: less than this may be rounding error.
 const FOREIGN_LEAST_S: f64 = 0.03;
 
@@ -309,7 +313,7 @@ impl RunTotals {
 
     fn time_warnings(&self, setup: &Setup) -> Vec<Warning> {
         let mut warnings = Vec::new();
-        if self.makespan_s < SHORTEST_S {
+        if self.makespan_s < shortest_s(setup.settings().is_serial()) {
             warnings.push(Warning::TooShort);
         }
         let mut unmeasured = if self.rounds == 0 { Vec::new() } else { Usage::missing(self.cpu.as_ref()) };

@@ -65,7 +65,7 @@ warnings! {
         "The run needed over 15 % more processor time than the median of the cell's earlier rows, for the same work.",
         "The clock was lower, or a virtual machine's host put two processors on one core: run again on a quiet machine.";
     TooShort, "too-short",
-        "The run took less than 5 ms, so starting threads and reading the clock affect the time.",
+        "The run took less than 5 ms (a serial one less than 2 ms), so starting threads and reading the clock affect the time.",
         "Use a larger image or more samples per pixel.";
     PartialSubpixels, "partial-subpixels",
         "The samples per pixel are not a multiple of 4, so the four subpixels have different numbers of samples.",

@@ -16,7 +16,7 @@ struct Step<'a> {
 
 /// The difference of two images of each seed.
 struct Changed {
-    /// The share of pixels that differ in any bit: those of which a path met the effect.
+    /// The share of pixels that differ in any bit for any seed: those of which a path met the effect.
     pixels: f64,
     /// Root mean square of the difference of expectations; `None` if it is lost in the noise.
     rmse: Option<f64>,
@@ -106,7 +106,8 @@ fn changed(before: Option<&BTreeMap<u64, Image>>, after: Option<&BTreeMap<u64, I
     let pairs = before.iter().filter_map(|(seed, image)| Some((image, after.get(seed)?)));
     let differences: Vec<Vec<f64>> = pairs.filter_map(|(a, b)| difference(a, b)).collect();
     let first = differences.first()?;
-    let pixels = first.chunks(3).filter(|pixel| pixel.iter().any(|value| *value != 0.0)).count() as f64;
+    let is_changed = |at: &usize| differences.iter().any(|own| own.get(*at).is_some_and(|value| *value != 0.0));
+    let pixels = (0..first.len() / 3).filter(|pixel| (3 * pixel..3 * pixel + 3).any(|at| is_changed(&at))).count();
     let mut products = Vec::new();
     for (index, own) in differences.iter().enumerate() {
         for other in &differences[index + 1..] {
@@ -114,7 +115,7 @@ fn changed(before: Option<&BTreeMap<u64, Image>>, after: Option<&BTreeMap<u64, I
         }
     }
     let mean = products.iter().sum::<f64>() / products.len() as f64;
-    Some(Changed { pixels: 3.0 * pixels / first.len() as f64, rmse: (mean > 0.0).then(|| mean.sqrt()) })
+    Some(Changed { pixels: 3.0 * pixels as f64 / first.len() as f64, rmse: (mean > 0.0).then(|| mean.sqrt()) })
 }
 
 fn difference(before: &Image, after: &Image) -> Option<Vec<f64>> {
