@@ -188,6 +188,25 @@ mod tests {
         Comparisons::of(&definition, Profile::Quick, &cells).unwrap().groups(cells.len())
     }
 
+    /// Two scenes with two profiles and three seeds: six comparisons in six groups, which are two comparisons.
+    #[test]
+    fn seeds_are_processes_of_one_comparison() {
+        let text = "title = \"t\"\nquestion = \"q\"\nfigures = []\n[[compare]]\nwhat = { effects = [\"all\"] }\n\
+                    with = { effects = [\"smallpt\", \"lens\"] }\n[matrix]\nscene = [\"cornell\", \"cornell-lens\"]\n\
+                    spp = [4]\nseed = [1, 2, 3]\nstrategy = [\"serial\"]\nthreads = [1]\ndecomposition = [\"rows\"]\n\
+                    kernel = [\"scalar\"]\neffects = [\"fitting\", \"all\"]\n";
+        let definition = Definition::from_text(&Lab::built_in(), "x", "x.toml", text).unwrap();
+        let cells = definition.cells(Profile::Quick).unwrap();
+        let comparisons = Comparisons::of(&definition, Profile::Quick, &cells).unwrap();
+        assert_eq!(comparisons.groups(cells.len()).len(), 6);
+        let over_seeds = comparisons.over_seeds(&cells);
+        assert_eq!(over_seeds.iter().map(Vec::len).collect::<Vec<_>>(), [3, 3]);
+        for seeds in over_seeds {
+            let scenes = seeds.iter().map(|pair| cells[pair.what].settings.scene.as_str());
+            assert_eq!(scenes.collect::<HashSet<_>>().len(), 1);
+        }
+    }
+
     /// A cell is selected by the profile that fits its scene, even if it asked for none. Cells of two scenes are compared
     /// only if the entry names scenes.
     #[test]

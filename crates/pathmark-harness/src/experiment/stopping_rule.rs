@@ -299,6 +299,26 @@ mod tests {
         }
     }
 
+    /// Two seeds with three processes each are six processes, in whatever process the values were measured.
+    #[test]
+    fn seeds_are_processes() {
+        let ratios = [1.0, 1.1, 1.3, 0.9, 1.2, 1.05];
+        let (own, other) = ([1.0; 3], [1.0; 6]);
+        let decisions = noted(&[
+            ("a1", &ratios[..3]),
+            ("b1", &own),
+            ("a2", &ratios[3..]),
+            ("b2", &own),
+            ("a", &ratios),
+            ("b", &other),
+        ]);
+        let over_seeds = decisions.paired(&[("a1", "b1"), ("a2", "b2")], u32::MAX).unwrap();
+        assert_eq!(over_seeds, decisions.paired(&[("a", "b")], u32::MAX).unwrap());
+        assert_eq!(over_seeds.processes, 6);
+        assert_eq!(decisions.paired(&[("a1", "b1"), ("a2", "b2")], 2).unwrap().processes, 4);
+        assert_eq!(decisions.paired(&[("a1", "b1"), ("absent", "b2")], u32::MAX), None);
+    }
+
     #[test]
     fn goals_have_words() {
         let goal = |text: &str| StoppingRule::parse(text, None).map(|until| until.goal);
