@@ -17,6 +17,8 @@ use std::collections::HashMap;
 const BESIDE: f64 = 7.0;
 /// Width of a fitted line: thinner than the data it belongs to.
 const FIT_LINE: f64 = 1.5;
+/// Width of a line that a later one covers: it shows at both sides.
+const COVERED_LINE: f64 = 3.5 * LINE;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
@@ -287,6 +289,23 @@ impl LineChart {
         }
     }
 
+    /// Whether a line that is drawn later runs over all points of a series.
+    fn is_covered(&self, frame: &Frame, first_alike: &[usize], index: usize) -> bool {
+        let spots = |index: usize| -> Vec<Place> {
+            let shift = self.shift(index);
+            let places = self.series[index].points.iter().filter_map(|point| frame.spot(point.x, point.y));
+            places.map(|(x, y)| (x + shift, y)).collect()
+        };
+        let own = spots(index);
+        let later =
+            (index + 1..self.series.len()).filter(|later| first_alike[*later] == *later && self.series[*later].line);
+        own.len() > 1
+            && later.map(spots).any(|other| {
+                let is_near = |own: &Place| other.windows(2).any(|ends| distance(*own, [ends[0], ends[1]]) < LINE);
+                own.iter().all(is_near)
+            })
+    }
+
     /// Draws a series, and those with the same points, into the frame; returns the number of points without a position.
     fn draw_series(&self, drawing: &mut Drawing, frame: &Frame, first_alike: &[usize], index: usize) -> usize {
         let series = &self.series[index];
@@ -294,10 +313,11 @@ impl LineChart {
         let moved = |place: Place| (place.0 + shift, place.1);
         let spots: Vec<Option<Place>> = series.points.iter().map(|p| frame.spot(p.x, p.y).map(moved)).collect();
         if series.line {
+            let width = if self.is_covered(frame, first_alike, index) { COVERED_LINE } else { LINE };
             // A point without a position leaves a gap in the line.
             for run in spots.split(Option::is_none) {
                 let places: Vec<Place> = run.iter().flatten().copied().collect();
-                drawing.dashed(places, series.look.colour, LINE, series.look.dash);
+                drawing.dashed(places, series.look.colour, width, series.look.dash);
             }
         }
         for (point, &spot) in series.points.iter().zip(&spots) {
@@ -403,5 +423,47 @@ impl Figure for LineChart {
             legend::draw(&mut drawing, &entries, frame.legend());
         }
         drawing
+    }
+}
+
+/// The distance of a point from a stretch.
+fn distance((x, y): Place, [from, to]: [Place; 2]) -> f64 {
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    let along = ((x - from.0) * dx + (y - from.1) * dy) / (dx * dx + dy * dy).max(f64::MIN_POSITIVE);
+    let along = along.clamp(0.0, 1.0);
+    let (across, up) = (x - from.0 - along * dx, y - from.1 - along * dy);
+    (across * across + up * up).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A stretch along x: beside it the distance is upright, beyond an end it is that of the end.
+    #[test]
+    fn distances_are_from_the_nearest_place_of_a_stretch() {
+        let stretch = [(0.0, 0.0), (10.0, 0.0)];
+        let found = [(5.0, 2.0), (5.0, 0.0), (13.0, 4.0), (-3.0, -4.0)].map(|place| distance(place, stretch));
+        assert_eq!(found, [2.0, 0.0, 5.0, 5.0]);
+        assert_eq!(distance((3.0, 4.0), [(0.0, 0.0); 2]), 5.0);
+    }
+
+    /// A line of three points under one of two: the lower one is wide. Crossing lines have the usual width.
+    #[test]
+    fn a_covered_line_shows_at_both_sides() {
+        let series = |index: usize, points: &[(f64, f64)]| {
+            Series::new(index.to_string(), Look::nth(index), points.iter().map(|(x, y)| Point::new(*x, *y)).collect())
+        };
+        let widths = |first: &[(f64, f64)], second: &[(f64, f64)]| {
+            let series = vec![series(0, first), series(1, second)];
+            let chart = LineChart::new("t", Axis::linear("x"), Axis::linear("y"), series);
+            let (x, y) = chart.ranges().unwrap();
+            let (_, frame) = Frame::begin(&chart.title, [""; 2], (&chart.x, &chart.y), Some((x, y)), (0.0, 0.0));
+            [0, 1].map(|index| chart.is_covered(&frame, &chart.first_alike(), index))
+        };
+        let line = [(0.0, 0.0), (5.0, 0.5), (10.0, 1.0)];
+        assert_eq!(widths(&line, &[(0.0, 0.0), (10.0, 1.0)]), [true, false]);
+        assert_eq!(widths(&line, &[(0.0, 1.0), (10.0, 0.0)]), [false, false]);
+        assert_eq!(widths(&line, &line), [false, false], "equal series are one line with both names");
     }
 }
