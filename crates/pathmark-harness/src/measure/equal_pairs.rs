@@ -7,8 +7,8 @@ use crate::lab::Lab;
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 
-/// Samples per pixel and size of a run: some 20 ms of work on two processors.
-const SPP: u32 = 16;
+/// Samples per pixel and size of a run: some 5 ms of work on two processors, since the speed of a machine drifts.
+const SPP: u32 = 4;
 const SIZE: [u32; 2] = [128, 96];
 
 /// The pairs of one process.
