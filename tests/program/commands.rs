@@ -377,7 +377,7 @@ fn the_programs_that_read_rows_draw_a_figure() {
         }
         if !has_rows {
             let small =
-                "run thread-scaling --set size=64x48 --filter decomposition=tiles:16x16 --repetitions 3 --out out";
+                "run thread-scaling --set size=64x48 --filter decomposition=tiles:8x8 --repetitions 3 --out out";
             finish(pathmark(folder.path(), &small.split_whitespace().collect::<Vec<_>>())).with_code(0);
             has_rows = true;
         }
