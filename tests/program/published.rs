@@ -8,7 +8,7 @@ use std::process::Command;
 
 /// Folders of results whose tables are made again; a thorough test takes all of them.
 const FEW: [&str; 3] = ["results/effects-in-lanes", "results/full", "results/many-cores"];
-const MORE: [&str; 2] = ["results", "results/reports"];
+const MORE: [&str; 3] = ["results", "results/reports", "results/xeon"];
 
 /// Tables that also take images, references or traces, which are too large to be committed.
 const NOT_FROM_ROWS: [&str; 10] = [
