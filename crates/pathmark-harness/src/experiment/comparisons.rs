@@ -13,7 +13,7 @@
 use super::diff::parse_share;
 use super::{Cell, Definition, Profile};
 use crate::error::{Error, InputError, Result};
-use crate::measure::{SERIAL, SETTINGS};
+use crate::measure::{ImageKey, SERIAL, SETTINGS};
 use serde::Deserialize;
 use std::collections::{BTreeMap, HashSet};
 
@@ -139,13 +139,14 @@ impl Comparisons {
 
     /// The comparisons, each over all of its seeds: two cells of another seed are other processes of the same comparison.
     pub(super) fn over_seeds(&self, cells: &[Cell]) -> Vec<Vec<Comparison>> {
-        let settings = |index: usize| {
-            SETTINGS.iter().filter(|own| own.name != "seed").map(|own| cells[index].shown(own)).collect::<Vec<_>>()
+        let without_seed = |index: usize| {
+            let Cell { id, keys: (image, _), .. } = &cells[index];
+            id.replacen(&image.to_string(), &ImageKey { seed: 0, ..image.clone() }.to_string(), 1)
         };
         let mut places = BTreeMap::new();
         let mut found: Vec<Vec<Comparison>> = Vec::new();
         for pair in &self.pairs {
-            let place = *places.entry([pair.what, pair.with].map(settings)).or_insert(found.len());
+            let place = *places.entry([pair.what, pair.with].map(without_seed)).or_insert(found.len());
             if place == found.len() {
                 found.push(Vec::new());
             }
