@@ -13,7 +13,7 @@
 use super::diff::parse_share;
 use super::{Cell, Definition, Profile};
 use crate::error::{Error, InputError, Result};
-use crate::measure::{ImageKey, SERIAL, SETTINGS};
+use crate::measure::{SERIAL, SETTINGS};
 use serde::Deserialize;
 use std::collections::{BTreeMap, HashSet};
 
@@ -141,7 +141,7 @@ impl Comparisons {
     pub(super) fn over_seeds(&self, cells: &[Cell]) -> Vec<Vec<Comparison>> {
         let without_seed = |index: usize| {
             let Cell { id, keys: (image, _), .. } = &cells[index];
-            id.replacen(&image.to_string(), &ImageKey { seed: 0, ..image.clone() }.to_string(), 1)
+            id.replacen(&image.to_string(), &image.without_seed().to_string(), 1)
         };
         let mut places = BTreeMap::new();
         let mut found: Vec<Vec<Comparison>> = Vec::new();

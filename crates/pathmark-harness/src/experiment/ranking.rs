@@ -24,7 +24,7 @@ use crate::analysis::ranking::{
 use crate::error::{InputError, Result};
 use crate::input::read_text;
 use crate::lab::Lab;
-use crate::measure::{ImageKey, Record, SERIAL, TimingConcerns};
+use crate::measure::{ImageKey, Record, TimingConcerns};
 use serde::Serialize;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
@@ -140,11 +140,8 @@ pub(super) fn schedules_of<'a>(
     for (row, turn, seconds) in rows.into_iter().filter_map(|(row, turn)| Some((row, turn, seconds(row)?))) {
         let image = row.image_key();
         let schedule = row.cell.strip_prefix(&format!("{image}/")).unwrap_or(&row.cell).to_string();
-        let role = || Timed {
-            is_serial: row.strategy == SERIAL && row.ranks.is_none(),
-            is_shown_only: shown_only.contains(&row.cell),
-            ..Timed::default()
-        };
+        let role =
+            || Timed { is_serial: row.is_serial(), is_shown_only: shown_only.contains(&row.cell), ..Timed::default() };
         let own = images.entry(image).or_default().entry(schedule).or_insert_with(role);
         own.times.insert(turn, seconds);
     }

@@ -4,7 +4,6 @@
 use super::Record;
 use super::run::shortest_s;
 use super::warning::Warning;
-use crate::lab::SERIAL;
 
 /// The duration of a batch over that of the shortest run: a margin, since the machine may get faster.
 const MARGIN: f64 = 1.5;
@@ -33,7 +32,7 @@ impl Record {
             idle_between_jobs_s idle_before_first_job_s idle_tail_s job_min_s job_median_s job_max_s voluntary_switches
             involuntary_switches other_cpu_s steal_s migrations cycles instructions cache_misses branch_misses
         }
-        let shortest_s = shortest_s(first.strategy == SERIAL && first.ranks.is_none());
+        let shortest_s = shortest_s(first.is_serial());
         if batch.makespan_s.is_some_and(|run_s| run_s * rows.len() as f64 >= shortest_s) {
             let short = Warning::TooShort.to_string();
             let others: Vec<&str> = first.warnings.split(';').filter(|warning| *warning != short).collect();
@@ -52,6 +51,7 @@ fn mean(rows: &[Record], value: impl Fn(&Record) -> Option<f64>) -> Option<f64> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lab::SERIAL;
 
     fn run(makespan_s: f64) -> Record {
         Record {

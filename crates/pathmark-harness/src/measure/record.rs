@@ -6,6 +6,7 @@ use super::{Column, ImageKey, Outcome, ScheduleKey, Settings, Setup, Warning, ut
 use crate::analysis::quantile::median;
 use crate::error::Result;
 use crate::image_io::Image;
+use crate::lab::SERIAL;
 use crate::metric;
 use crate::scene::Scene;
 use crate::settings::{Asked, settings_list};
@@ -238,6 +239,11 @@ impl Record {
             object_mse: other.object_mse,
             ..self
         }
+    }
+
+    /// Whether one worker ran one job after the other.
+    pub fn is_serial(&self) -> bool {
+        self.strategy == SERIAL && self.ranks.is_none()
     }
 
     /// CPU seconds during the makespan, in the program and in the system.
