@@ -35,15 +35,10 @@ fn measured(folder: &Path, seed: u64, references: [PathBuf; 2]) -> Finished {
     let job = CellJob {
         experiment: "shared-seeds".to_string(),
         points: vec![PointJob { cell: "one".to_string(), spp: 4, image: None }],
-        repetition: 0,
-        order: 0,
         scene: SceneVersion::of(&Setup::prepare(settings.clone()).unwrap()),
         settings,
         references: Some(references.map(half)),
-        object: None,
-        external: None,
-        trace: None,
-        stays: false,
+        ..CellJob::default()
     };
     let mut command = pathmark(folder, &["cell"]);
     let mut child = command.stdin(Stdio::piped()).spawn().unwrap();

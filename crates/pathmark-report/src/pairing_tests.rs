@@ -386,6 +386,36 @@ fn no_line_joins_points_of_other_repetitions() {
     assert!(is_hollow(priced(3)));
 }
 
+/// Prices of effects come from groups of cells with seeds of their own, and some have more processes than others: all count,
+/// and the dearest effect, in the group of the most processes, is the title's.
+#[test]
+fn prices_of_effects_count_all_processes_of_their_groups() {
+    let mut rows = Vec::new();
+    for (seed, processes, effects, factor) in [(1, 4, "lens", 1.25), (2, 4, "fog", 1.125), (3, 7, "all", 1.5)] {
+        for (repetition, pair) in (0..processes).flat_map(|process| [0, 1].map(|pair| (process, pair))) {
+            let noise = 1.0 + 0.01 * f64::from(repetition % 3);
+            for (effects, seconds) in [("smallpt", 1.0), (effects, factor * noise)] {
+                let own = Record { seed, repetition, pair: Some(pair), effects: effects.to_string(), ..row() };
+                rows.push(Record { cpu_user_s: Some(seconds), cpu_system_s: Some(0.0), ..own });
+            }
+        }
+    }
+    let price = |profile: &str| {
+        format!(
+            "[[figure.effects.price]]\neffect = \"{profile}\"\nabsent = {{ scene = \"cornell\", profile = \"smallpt\" }}\n\
+             unused = {{ scene = \"cornell\", profile = \"{profile}\" }}\n\
+             used = {{ scene = \"cornell\", profile = \"{profile}\" }}\n"
+        )
+    };
+    let prices = ["lens", "fog", "all"].map(price).concat();
+    let blocks = blocks(&results(&["effects"], &prices, rows).unwrap()).unwrap();
+    let drawing = svg(&blocks, "effects");
+    assert!(!drawing.contains("Hollow:"), "{drawing}");
+    assert!(drawing.contains("An unused effect costs up to 51"), "{drawing}");
+    let told: Vec<String> = table(&blocks).rows().map(|row| row.last().unwrap().clone()).collect();
+    assert_eq!(told, ["4", "4", "7"]);
+}
+
 /// Times of two images have no common order: the typical run is one of the image with the most runs.
 #[test]
 fn the_typical_run_is_of_one_image() {

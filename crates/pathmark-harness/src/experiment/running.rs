@@ -3,7 +3,7 @@
 use super::baseline::Baseline;
 use super::comparisons::Comparison;
 use super::drift::Drift;
-use super::pairs::{Contestant, run_pairs};
+use super::pairs::{Contestant, Turns, run_pairs};
 use super::records_file::RecordsFile;
 use super::stopping_rule::{Decisions, Goal, half_width};
 use super::sweep::{Summary, Sweep};
@@ -157,7 +157,11 @@ impl<'a> Running<'a> {
                 self.baseline.as_ref().map(|baseline| baseline.program().to_path_buf()).ok_or_else(String::new);
             group.push(Contestant::new(Baseline::job(&job(*index, self)), program, limit));
         }
-        let rows = run_pairs(&mut group, self.pairs, &self.sweep.definition.name, process);
+        let mut turns = Turns::of(&self.sweep.definition.name, self.pairs, members, &self.sweep.comparisons.pairs);
+        if self.baseline.is_some() {
+            turns.compared = (0..members.len()).map(|own| [own, own + members.len()]).collect();
+        }
+        let rows = run_pairs(&mut group, &turns, process);
         drop(group);
         let (mut owns, mut others, first) = (Vec::new(), Vec::new(), self.order);
         for (at, record) in rows {

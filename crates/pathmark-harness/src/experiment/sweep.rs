@@ -299,6 +299,7 @@ impl<'a> Sweep<'a> {
             external: cell.external.clone().map(|external| (external, folder.join("external"))),
             trace: definition.keeps(Keep::Traces).then(trace),
             stays: false,
+            cpu: None,
         }
     }
 }

@@ -132,7 +132,7 @@ fn prices(
         let kinds = price.unused.iter().chain([&price.used]);
         kinds.map(|kind| ((index, kind), over(kind).unwrap_or_default())).collect::<Vec<_>>()
     });
-    let ratios: BTreeMap<(usize, &Kind), Ratio> = estimates(cells, results.stopping()).into_iter().collect();
+    let ratios: BTreeMap<(usize, &Kind), Ratio> = each_alone(cells, results.stopping()).into_iter().collect();
     let found = prices.iter().enumerate().filter_map(|(index, price)| {
         let of = |kind| Some((times.get(kind)?, *ratios.get(&(index, kind))?));
         let unused = price.unused.as_ref().and_then(|kind| of(kind).map(|(times, ratio)| (kind, times, ratio)));
@@ -247,15 +247,12 @@ fn fits<'a>(results: &'a Results) -> Vec<Fit<'a>> {
         let ratios = all.sample_s.over(&fitting.sample_s);
         Some(((scene, profile, fitting, all), ratios))
     };
-    let mut found: Vec<_> = groups.into_iter().filter_map(of_scene).collect();
-    // One accelerator for each scene is enough: the first by name that has a ratio.
-    let has_ratio = |ratios: &Repeats| ratios.median(results.stopping()).and_then(Ratio::of).is_some();
-    found.retain(|(_, ratios)| has_ratio(ratios));
-    found.dedup_by(|later, first| later.0.0 == first.0.0);
-    let fits = estimates(found, results.stopping()).into_iter();
-    let mut fits: Vec<Fit<'_>> = fits
+    let mut fits: Vec<Fit<'_>> = each_alone(groups.into_iter().filter_map(of_scene), results.stopping())
+        .into_iter()
         .map(|((scene, profile, fitting, largest), ratio)| Fit { scene, profile, fitting, largest, ratio })
         .collect();
+    // One accelerator for each scene is enough: the first by name that has a ratio.
+    fits.dedup_by(|later, first| later.scene == first.scene);
     fits.sort_by(|a, b| a.ratio.falling(&b.ratio));
     fits
 }

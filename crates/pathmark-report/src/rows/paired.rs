@@ -333,8 +333,15 @@ pub(crate) fn along<T, L: Ord>(
 }
 
 /// The medians that have an interval.
-pub(crate) fn estimates<T>(cells: impl IntoIterator<Item = (T, Repeats)>, stopping: Stopping) -> Vec<(T, Ratio)> {
+fn estimates<T>(cells: impl IntoIterator<Item = (T, Repeats)>, stopping: Stopping) -> Vec<(T, Ratio)> {
     with_intervals(medians(cells, stopping))
+}
+
+/// The ratios of cells that ran in adjacent pairs of groups of their own: each over all its processes, because they share
+/// nothing with those of another group.
+pub(crate) fn each_alone<T>(cells: impl IntoIterator<Item = (T, Repeats)>, stopping: Stopping) -> Vec<(T, Ratio)> {
+    let ratio = |(thing, repeats): (T, Repeats)| Some((thing, Ratio::of(repeats.median(stopping)?)?));
+    cells.into_iter().filter_map(ratio).collect()
 }
 
 /// Those with an interval.
