@@ -52,6 +52,7 @@ use pathmark_harness::{
     analysis, atomic_file, cases_file, cluster, csv_file, digest, error, experiment, files, film_file, guard_prices,
     image_io, input, kernel, lab, measure, metric, scene, shell, simulate, strategy,
 };
+use rayon::prelude::*;
 use rows::{naming, paired, schedule};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -126,24 +127,26 @@ fn write_page(sections: &[Section], out: &Path) -> Result<PathBuf> {
 /// The sections of a folder, whose figures are drawn, and the folders of a class that are left out.
 fn sections(lab: &Arc<Lab>, out: &Path) -> Result<(Vec<Section>, Vec<String>)> {
     let (mut sections, mut class) = (Vec::<Section>::new(), Class::default());
-    let add = |sections: &mut Vec<Section>, folder: &Path, section: Section| {
-        section.blocks.iter().try_for_each(|block| block.save(&folder.join("figures")))?;
-        sections.push(section);
-        Ok::<(), Error>(())
-    };
+    let save =
+        |blocks: &[Block], folder: &Path| blocks.iter().try_for_each(|block| block.save(&folder.join("figures")));
     let members = members(out)?;
     let are_many = members.len() > MOST_DRAWN;
     let (mut left_out, mut first_error) = (class::without_rows(out, &members)?, None);
-    for Member { folder, student } in members {
-        let mut drawn = || {
-            let results = Results::read(lab, folder.parent().unwrap_or(out), &folder)?;
-            let blocks = figures::blocks(&results)?;
+    let drawn = |Member { folder, .. }: &Member| {
+        let results = Results::read(lab, folder.parent().unwrap_or(out), folder)?;
+        let blocks = figures::blocks(&results)?;
+        save(&blocks, folder)?;
+        Ok::<_, Error>((results, blocks))
+    };
+    let all: Vec<Result<_>> = members.par_iter().map(drawn).collect();
+    for (Member { folder, student }, drawn) in members.into_iter().zip(all) {
+        let of_class = |(results, blocks): (Results, Vec<Block>)| {
             if let Some(student) = &student {
                 class.add(student, &results)?;
             }
-            Ok::<_, Error>((results, blocks))
+            Ok((results, blocks))
         };
-        let (results, blocks) = match (drawn(), &student) {
+        let (results, blocks) = match (drawn.and_then(of_class), &student) {
             (Ok(drawn), _) => drawn,
             (Err(error), None) => return Err(error),
             // One student's damaged rows are no reason to show nobody's.
@@ -158,19 +161,21 @@ fn sections(lab: &Arc<Lab>, out: &Path) -> Result<(Vec<Section>, Vec<String>)> {
         let files = vec![seen(&records_path(&folder)), seen(Path::new(MACHINE))];
         let linked_figures = (student.is_some() && are_many).then(|| seen(Path::new("figures")));
         let section = Section { files, linked_figures, ..Section::of(results, blocks) };
-        add(&mut sections, &folder, class::of_student(student.as_deref(), section))?;
+        sections.push(class::of_student(student.as_deref(), section));
     }
     if let Some(error) = first_error.filter(|_| class.is_empty()) {
         return Err(error);
     }
     if let Some(section) = class.section(out) {
-        add(&mut sections, out, section)?;
+        save(&section.blocks, out)?;
+        sections.push(section);
     }
     if let Some(section) = sections.last_mut() {
         section.blocks.splice(0..0, left_out.iter().map(Block::notice));
     }
     for section in [guards::section(out)?, page::bursts::section(out)?].into_iter().flatten() {
-        add(&mut sections, &out.join(&section.name), section)?;
+        save(&section.blocks, &out.join(&section.name))?;
+        sections.push(section);
     }
     if !sections.is_empty() {
         sections.extend(doctor::section(out)?);

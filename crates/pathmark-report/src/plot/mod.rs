@@ -47,8 +47,8 @@ pub use panels::Panels;
 pub use stacked_bar::{Piece, StackPart, StackRow, StackedBars};
 pub use title::Title;
 
-/// A figure that can be drawn as vectors and as pixels.
-pub trait Figure {
+/// A figure that can be drawn as vectors and as pixels, by any thread.
+pub trait Figure: Send {
     fn drawing(&self) -> Drawing;
 
     /// The same figure on other axes, and the name of those axes, for a page to switch to.
