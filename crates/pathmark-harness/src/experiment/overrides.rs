@@ -74,6 +74,9 @@ fn set(table: &mut Table, pair: &str) -> Result<()> {
         let problem = "lacks the = between axis and values";
         return Err(InputError::new("set", pair, problem).allowed("AXIS=VALUE,VALUE...").into());
     };
+    if values.split(',').any(|value| value.trim().is_empty()) {
+        return Err(InputError::new("set", pair, "has an empty value").allowed("AXIS=VALUE,VALUE...").into());
+    }
     if name == REFERENCE_SPP {
         let spp = number(name, values)?;
         profiles(table).for_each(|profile| _ = profile.insert(name.to_string(), spp.clone()));

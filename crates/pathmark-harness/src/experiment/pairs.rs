@@ -139,7 +139,9 @@ fn shared_cpu(group: &[Contestant], process: u32) -> Option<usize> {
 /// Runs the pairs of a group; returns the rows with the places of their cells in the group, in the order in which they ran.
 pub(super) fn run_pairs(group: &mut [Contestant], turns: &Turns<'_>, process: u32) -> Vec<(usize, Record)> {
     let cpu = shared_cpu(group, process);
-    group.iter_mut().for_each(|member| member.job.cpu = cpu);
+    for member in group.iter_mut() {
+        member.job.cpu = cpu;
+    }
     let mut rows: Vec<(usize, Record)> = Vec::new();
     let (mut pair, mut wanted) = (0, turns.pairs);
     while pair < wanted {
