@@ -127,26 +127,27 @@ fn write_page(sections: &[Section], out: &Path) -> Result<PathBuf> {
 /// The sections of a folder, whose figures are drawn, and the folders of a class that are left out.
 fn sections(lab: &Arc<Lab>, out: &Path) -> Result<(Vec<Section>, Vec<String>)> {
     let (mut sections, mut class) = (Vec::<Section>::new(), Class::default());
-    let save =
-        |blocks: &[Block], folder: &Path| blocks.iter().try_for_each(|block| block.save(&folder.join("figures")));
+    let add = |sections: &mut Vec<Section>, folder: &Path, section: Section| {
+        // Compressing pictures takes most of the time.
+        let save = |block: &Block| block.save(&folder.join("figures"));
+        let saved: Vec<Result<()>> = section.blocks.par_iter().map(save).collect();
+        saved.into_iter().collect::<Result<()>>()?;
+        sections.push(section);
+        Ok::<(), Error>(())
+    };
     let members = members(out)?;
     let are_many = members.len() > MOST_DRAWN;
     let (mut left_out, mut first_error) = (class::without_rows(out, &members)?, None);
-    let drawn = |Member { folder, .. }: &Member| {
-        let results = Results::read(lab, folder.parent().unwrap_or(out), folder)?;
-        let blocks = figures::blocks(&results)?;
-        save(&blocks, folder)?;
-        Ok::<_, Error>((results, blocks))
-    };
-    let all: Vec<Result<_>> = members.par_iter().map(drawn).collect();
-    for (Member { folder, student }, drawn) in members.into_iter().zip(all) {
-        let of_class = |(results, blocks): (Results, Vec<Block>)| {
+    for Member { folder, student } in members {
+        let mut drawn = || {
+            let results = Results::read(lab, folder.parent().unwrap_or(out), &folder)?;
+            let blocks = figures::blocks(&results)?;
             if let Some(student) = &student {
                 class.add(student, &results)?;
             }
-            Ok((results, blocks))
+            Ok::<_, Error>((results, blocks))
         };
-        let (results, blocks) = match (drawn.and_then(of_class), &student) {
+        let (results, blocks) = match (drawn(), &student) {
             (Ok(drawn), _) => drawn,
             (Err(error), None) => return Err(error),
             // One student's damaged rows are no reason to show nobody's.
@@ -161,21 +162,19 @@ fn sections(lab: &Arc<Lab>, out: &Path) -> Result<(Vec<Section>, Vec<String>)> {
         let files = vec![seen(&records_path(&folder)), seen(Path::new(MACHINE))];
         let linked_figures = (student.is_some() && are_many).then(|| seen(Path::new("figures")));
         let section = Section { files, linked_figures, ..Section::of(results, blocks) };
-        sections.push(class::of_student(student.as_deref(), section));
+        add(&mut sections, &folder, class::of_student(student.as_deref(), section))?;
     }
     if let Some(error) = first_error.filter(|_| class.is_empty()) {
         return Err(error);
     }
     if let Some(section) = class.section(out) {
-        save(&section.blocks, out)?;
-        sections.push(section);
+        add(&mut sections, out, section)?;
     }
     if let Some(section) = sections.last_mut() {
         section.blocks.splice(0..0, left_out.iter().map(Block::notice));
     }
     for section in [guards::section(out)?, page::bursts::section(out)?].into_iter().flatten() {
-        save(&section.blocks, &out.join(&section.name))?;
-        sections.push(section);
+        add(&mut sections, &out.join(&section.name), section)?;
     }
     if !sections.is_empty() {
         sections.extend(doctor::section(out)?);

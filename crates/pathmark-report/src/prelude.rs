@@ -10,7 +10,7 @@ pub(crate) use crate::figures::options::{options, yardstick};
 pub(crate) use crate::measure::{ImageKey, ScheduleKey};
 pub(crate) use crate::naming::joined;
 pub(crate) use crate::paired::{
-    Forget, Partners, Ratio, Repeats, along, any_schedule, each_alone, in_common, medians, ratios, time_ratio,
+    Forget, Partners, Ratio, Repeats, along, any_schedule, in_common, medians, ratios, ratios_of_groups, time_ratio,
     time_ratios, with_intervals,
 };
 pub(crate) use crate::plot::style::Look;

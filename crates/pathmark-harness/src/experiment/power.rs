@@ -4,7 +4,8 @@
 //! numbers of processes and pairs for an interval (T. Kalibera and R. Jones, "Rigorous Benchmarking in Reasonable Time",
 //! ISMM 2013, section 7).
 
-use super::pairs::{Contestant, Turns, run_pairs};
+use super::CellJob;
+use super::pairs::{Contestant, run_pairs};
 use super::sweep::Sweep;
 use crate::analysis::adjacent_pairs::{Costs, PowerPlan, Spread, by_process, spread};
 use crate::error::Result;
@@ -43,16 +44,20 @@ impl Sweep<'_> {
             if begun.elapsed() >= MOST {
                 break;
             }
-            let turns = Turns::of(&self.definition.name, PAIRS, &group, &self.comparisons.pairs);
             let mut times: BTreeMap<usize, BTreeMap<(u32, Option<u32>), f64>> = BTreeMap::new();
             let mut seconds = 0.0;
             for process in 0..PROCESSES {
                 let own = std::env::current_exe().map_err(|e| format!("finding this program: {e}"));
-                let job = |index: &usize| self.job(&self.cells[*index], (process, 0), &self.options.out, &[], None);
-                let contestant = |index| Contestant::new(job(index).alone(), own.clone(), None);
+                let contestant = |index: &usize| {
+                    let job = self.job(&self.cells[*index], (process, 0), &self.options.out, &[], None).alone();
+                    let cpu = self.processor(*index, process);
+                    Contestant::new(CellJob { cpu, ..job }, own.clone(), None)
+                };
                 let mut contestants: Vec<Contestant> = group.iter().map(contestant).collect();
                 let before = Instant::now();
-                for (at, Record { pair, makespan_s, runs, .. }) in run_pairs(&mut contestants, &turns, process) {
+                for (at, Record { pair, makespan_s, runs, .. }) in
+                    run_pairs(&mut contestants, PAIRS, &self.definition.name, process)
+                {
                     seconds += makespan_s.unwrap_or(0.0) * f64::from(runs.unwrap_or(1));
                     makespan_s.and_then(|time| times.entry(group[at]).or_default().insert((process, pair), time));
                 }

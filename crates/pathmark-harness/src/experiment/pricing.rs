@@ -5,7 +5,7 @@
 //! Times come from other runs: all pilots take turns in adjacent pairs ([`super::pairs`]), in several processes, because a
 //! process has one memory layout for its whole life.
 
-use super::pairs::{Contestant, Turns, USUAL_PAIRS, run_pairs};
+use super::pairs::{Contestant, USUAL_PAIRS, run_pairs};
 use super::{CellJob, PointJob, Progress, SceneVersion};
 use crate::analysis::Estimate;
 use crate::analysis::adjacent_pairs::{by_process, paired_ratio};
@@ -106,7 +106,6 @@ pub fn run_pilots(
 fn time(lab: &Lab, runs: &mut [&mut PilotRun], progress: &dyn Progress) -> Result<()> {
     progress.begin("pilot times", u64::from(PROCESSES));
     let program = std::env::current_exe().map_err(|e| format!("finding this program: {e}"));
-    let turns = Turns { name: "price", pairs: USUAL_PAIRS, compared: Vec::new() };
     for process in 0..PROCESSES {
         let mut group = Vec::new();
         for (number, run) in runs.iter().enumerate() {
@@ -117,7 +116,7 @@ fn time(lab: &Lab, runs: &mut [&mut PilotRun], progress: &dyn Progress) -> Resul
             let job = CellJob { points, repetition: process, settings, scene, ..CellJob::default() };
             group.push(Contestant::new(job, program.clone(), None));
         }
-        for (at, row) in run_pairs(&mut group, &turns, process) {
+        for (at, row) in run_pairs(&mut group, USUAL_PAIRS, "price", process) {
             let Some(seconds) = row.makespan_s.filter(|_| row.error.is_empty()) else {
                 return Err(Error::Check(format!("the pilot's run failed: {}", row.error)));
             };

@@ -3,12 +3,12 @@
 use super::baseline::Baseline;
 use super::comparisons::Comparison;
 use super::drift::Drift;
-use super::pairs::{Contestant, Turns, run_pairs};
+use super::pairs::{Contestant, run_pairs};
 use super::records_file::RecordsFile;
 use super::stopping_rule::{Decisions, Goal, half_width};
 use super::sweep::{Summary, Sweep};
 use super::time_limit::Limits;
-use super::{Cell, CellPoint, HalfFile, Progress, Reference};
+use super::{Cell, CellJob, CellPoint, HalfFile, Progress, Reference};
 use crate::error::Result;
 use crate::measure::{LeftOut, Record, SETTINGS, Setting, Settings, TimingConcerns};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
@@ -143,7 +143,8 @@ impl<'a> Running<'a> {
         let resumed = self.first_pairs.get(&process).copied().filter(|_| !members.iter().all(is_missing));
         let job = |index: usize, running: &Self| {
             let of = (process, running.order);
-            running.sweep.job(&cells[index], of, &running.folder, &running.references, running.lowest_seed)
+            let job = running.sweep.job(&cells[index], of, &running.folder, &running.references, running.lowest_seed);
+            CellJob { cpu: running.sweep.processor(index, process), ..job }
         };
         let own = std::env::current_exe().map_err(|e| format!("finding this program: {e}"));
         let mut group = Vec::new();
@@ -157,11 +158,7 @@ impl<'a> Running<'a> {
                 self.baseline.as_ref().map(|baseline| baseline.program().to_path_buf()).ok_or_else(String::new);
             group.push(Contestant::new(Baseline::job(&job(*index, self)), program, limit));
         }
-        let mut turns = Turns::of(&self.sweep.definition.name, self.pairs, members, &self.sweep.comparisons.pairs);
-        if self.baseline.is_some() {
-            turns.compared = (0..members.len()).map(|own| [own, own + members.len()]).collect();
-        }
-        let rows = run_pairs(&mut group, &turns, process);
+        let rows = run_pairs(&mut group, self.pairs, &self.sweep.definition.name, process);
         drop(group);
         let (mut owns, mut others, first) = (Vec::new(), Vec::new(), self.order);
         for (at, record) in rows {

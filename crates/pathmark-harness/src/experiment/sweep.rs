@@ -21,6 +21,7 @@ use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
 use crate::film::Film;
+use crate::machine::fastest_cpus;
 use crate::measure::{CALIBRATIONS, LeftOut, Record, TimingConcerns, write_calibrations};
 use crate::temporary;
 use std::collections::HashSet;
@@ -89,6 +90,8 @@ pub struct Sweep<'a> {
     pub(super) until: Option<StoppingRule>,
     /// The cells that run side by side.
     pub(super) comparisons: Comparisons,
+    /// Those of them that share a processor while they take turns: serial ones, if there is no other build.
+    sharing: HashSet<usize>,
 }
 
 impl<'a> Sweep<'a> {
@@ -151,13 +154,14 @@ impl<'a> Sweep<'a> {
             files.claims("out", &folder.join(name))?;
         }
         let until = StoppingRule::of(definition, options)?;
-        Ok(Self { definition, options, cells, references, until, comparisons })
+        let sharing = if options.baseline.is_none() { comparisons.serial_cells(&cells) } else { HashSet::new() };
+        Ok(Self { definition, options, cells, references, until, comparisons, sharing })
     }
 
     /// Runs the repetitions of cells that have no rows yet. Each repetition visits all cells once, in a different
     /// order.
     pub fn run(&self, progress: &dyn Progress) -> Result<Summary> {
-        let Self { definition, options, cells, references: wanted, until, comparisons } = self;
+        let Self { definition, options, cells, references: wanted, until, comparisons, .. } = self;
         let folder = options.out.join(&definition.name);
         let run = self.run_file()?;
         let (file, done) = open(definition, options, &run, &folder)?;
@@ -250,6 +254,15 @@ impl<'a> Sweep<'a> {
             self.count_instructions(&summary.folder, progress)?;
         }
         Ok(summary)
+    }
+
+    /// The processor of a cell's process. Two processors may differ in speed for as long as a process lives, because a host
+    /// shares one of them, so serial runs that take turns share theirs. Two processes use one processor, because these begin
+    /// with either order; the next two use another one of the fastest kind, and other sweeps begin with another one. `None`
+    /// for other cells, and where the system does not list its processors.
+    pub(super) fn processor(&self, index: usize, process: u32) -> Option<usize> {
+        let cpus = if self.sharing.contains(&index) { fastest_cpus() } else { Vec::new() };
+        cpus.get(std::process::id().wrapping_add(process / 2) as usize % cpus.len().max(1)).copied()
     }
 
     /// The pairs of a process, where cells run side by side.

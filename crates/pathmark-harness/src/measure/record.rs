@@ -105,9 +105,10 @@ settings_list!(columns {
         /// Times that a worker began a job on another processor than its job before. Empty where the system does not report
         /// it, and for several processes.
         pub migrations: Option<u64>,
-        /// Mean clock of the processors before the run, as the system reports it; empty where it does not.
+        /// Mean clock of the processors that the program may use, before the run, as the system reports it; empty where it does
+        /// not.
         pub clock_start_mhz: Option<f64>,
-        /// Mean clock of the processors after the run.
+        /// Mean clock of these processors after the run.
         pub clock_end_mhz: Option<f64>,
         /// Cycles of the processors in this program during the makespan; like all counters empty without the setting
         /// `counters`, and where the system does not grant it.

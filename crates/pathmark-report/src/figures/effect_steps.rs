@@ -38,7 +38,7 @@ pub(super) fn blocks(results: &Results, scenes: &[String]) -> Result<Vec<Block>>
     let cells = pairs.iter().flat_map(|(before, scene)| {
         KERNELS.map(|kernel| ((*scene, kernel), times(scene, kernel).over(&times(before, kernel))))
     });
-    let ratios: BTreeMap<(&str, &str), Ratio> = each_alone(cells, results.stopping()).into_iter().collect();
+    let ratios: BTreeMap<(&str, &str), Ratio> = ratios_of_groups(cells, results.stopping()).into_iter().collect();
     let steps: Vec<Step<'_>> = pairs
         .into_iter()
         .map(|(before, scene)| Step {

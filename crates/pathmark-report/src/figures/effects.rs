@@ -132,7 +132,7 @@ fn prices(
         let kinds = price.unused.iter().chain([&price.used]);
         kinds.map(|kind| ((index, kind), over(kind).unwrap_or_default())).collect::<Vec<_>>()
     });
-    let ratios: BTreeMap<(usize, &Kind), Ratio> = each_alone(cells, results.stopping()).into_iter().collect();
+    let ratios: BTreeMap<(usize, &Kind), Ratio> = ratios_of_groups(cells, results.stopping()).into_iter().collect();
     let found = prices.iter().enumerate().filter_map(|(index, price)| {
         let of = |kind| Some((times.get(kind)?, *ratios.get(&(index, kind))?));
         let unused = price.unused.as_ref().and_then(|kind| of(kind).map(|(times, ratio)| (kind, times, ratio)));
@@ -161,6 +161,7 @@ fn prices(
         "{} A used effect is another image, with other paths. A kernel in which several effects are unused is drawn once.",
         ratio_bars(found.iter().flat_map(|found| found.unused_ratio().into_iter().chain([found.used.1]))),
     );
+    let count = |ratio: Ratio| ratio.count.map(|count| count as f64);
     let place = |kind: &Kind| format!("{}, {}", kind.scene, kind.profile);
     let findings = generality(&found, stem).into_iter().flatten();
     let table = Block::table(table, format!("The price of an effect, kernel {kernel}"), &found)
@@ -175,7 +176,8 @@ fn prices(
         .number("ns per sample, used", Decimals(0), |found| found.used.0.nanoseconds())
         .number("rays per sample, used", Decimals(2), |found| found.used.0.rays)
         .estimated("ratio used / absent", Decimals(3), |found| Estimated::from(found.used.1))
-        .number("processes", Decimals(0), |found| found.used.1.count.map(|count| count as f64))
+        .number("processes, unused", Decimals(0), |found| count(found.unused_ratio()?))
+        .number("processes, used", Decimals(0), |found| count(found.used.1))
         .end();
     [Block::figure(stem, plot)].into_iter().chain(findings).chain([table]).collect()
 }
@@ -247,7 +249,7 @@ fn fits<'a>(results: &'a Results) -> Vec<Fit<'a>> {
         let ratios = all.sample_s.over(&fitting.sample_s);
         Some(((scene, profile, fitting, all), ratios))
     };
-    let mut fits: Vec<Fit<'_>> = each_alone(groups.into_iter().filter_map(of_scene), results.stopping())
+    let mut fits: Vec<Fit<'_>> = ratios_of_groups(groups.into_iter().filter_map(of_scene), results.stopping())
         .into_iter()
         .map(|((scene, profile, fitting, largest), ratio)| Fit { scene, profile, fitting, largest, ratio })
         .collect();

@@ -48,7 +48,7 @@ pub use stacked_bar::{Piece, StackPart, StackRow, StackedBars};
 pub use title::Title;
 
 /// A figure that can be drawn as vectors and as pixels, by any thread.
-pub trait Figure: Send {
+pub trait Figure: Sync {
     fn drawing(&self) -> Drawing;
 
     /// The same figure on other axes, and the name of those axes, for a page to switch to.

@@ -4,7 +4,7 @@
 //! Both rows of a pair show one image in one repetition, apart from the axes that the comparison varies; where cells ran in
 //! adjacent pairs, in one pair of one process. Machine drift therefore affects both equally, and no image size enters a
 //! ratio. Adjacent pairs give an interval over processes ([`paired_ratio`]). Medians of several cells are compared only over
-//! repetitions that these cells share.
+//! repetitions that these cells share; ratios of several groups of pairs share none ([`ratios_of_groups`]).
 
 use crate::analysis::adjacent_pairs::paired_ratio;
 use crate::analysis::confidence_sequence::Stopping;
@@ -217,6 +217,10 @@ impl Repeats {
         self.0.is_empty()
     }
 
+    fn is_in_pairs(&self) -> bool {
+        self.0.keys().all(|(_, _, (_, pair))| pair.is_some())
+    }
+
     /// A value of each repetition: the median of its pairs, if it has several.
     pub(crate) fn values(&self) -> Vec<f64> {
         processes(&self.0).values().filter_map(|own| median(own)).collect()
@@ -337,9 +341,16 @@ fn estimates<T>(cells: impl IntoIterator<Item = (T, Repeats)>, stopping: Stoppin
     with_intervals(medians(cells, stopping))
 }
 
-/// The ratios of cells that ran in adjacent pairs of groups of their own: each over all its processes, because they share
-/// nothing with those of another group.
-pub(crate) fn each_alone<T>(cells: impl IntoIterator<Item = (T, Repeats)>, stopping: Stopping) -> Vec<(T, Ratio)> {
+/// The ratios of groups of cells: in adjacent pairs each over all its processes, because two groups share none; otherwise as
+/// [`medians`].
+pub(crate) fn ratios_of_groups<T>(
+    cells: impl IntoIterator<Item = (T, Repeats)>,
+    stopping: Stopping,
+) -> Vec<(T, Ratio)> {
+    let cells: Vec<(T, Repeats)> = cells.into_iter().collect();
+    if !cells.iter().all(|(_, repeats)| repeats.is_in_pairs()) {
+        return estimates(cells, stopping);
+    }
     let ratio = |(thing, repeats): (T, Repeats)| Some((thing, Ratio::of(repeats.median(stopping)?)?));
     cells.into_iter().filter_map(ratio).collect()
 }
