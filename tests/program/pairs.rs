@@ -79,7 +79,7 @@ fn compared_cells_run_in_turns() {
     assert!(figure.contains("work-stealing"), "{figure}");
 }
 
-/// A process that is told its processor stays there, with all threads that it starts later.
+/// A process that is told its processor stays there.
 #[test]
 fn a_process_stays_on_the_processor_that_it_is_told() {
     let settings = Settings { scene: "cornell".to_string(), strategy: "serial".to_string(), ..Settings::default() };

@@ -257,12 +257,11 @@ impl<'a> Sweep<'a> {
     }
 
     /// The processor of a cell's process. Two processors may differ in speed for as long as a process lives, because a host
-    /// shares one of them, so serial runs that take turns share theirs. Two processes use one processor, because these begin
-    /// with either order; the next two use another one of the fastest kind, and other sweeps begin with another one. `None`
-    /// for other cells, and where the system does not list its processors.
+    /// shares one of them, so serial runs that take turns share theirs. Sweeps beside each other begin with different ones.
+    /// `None` for other cells, and where the system does not list its processors.
     pub(super) fn processor(&self, index: usize, process: u32) -> Option<usize> {
         let cpus = if self.sharing.contains(&index) { fastest_cpus() } else { Vec::new() };
-        cpus.get(std::process::id().wrapping_add(process / 2) as usize % cpus.len().max(1)).copied()
+        in_turn(&cpus, std::process::id(), process)
     }
 
     /// The pairs of a process, where cells run side by side.
@@ -405,4 +404,23 @@ fn check_names(definition: &Definition, options: &Options, cells: &[Cell]) -> Re
         }
     }
     Ok(())
+}
+
+/// The processor of a process: two processes use one processor, because these begin with either order, and the next two
+/// another one.
+fn in_turn(cpus: &[usize], first: u32, process: u32) -> Option<usize> {
+    cpus.get(first.wrapping_add(process / 2) as usize % cpus.len().max(1)).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_turn;
+
+    #[test]
+    fn two_processes_share_a_processor() {
+        let of = |first: u32| [0, 1, 2, 3, 4, 5, 6, 7].map(|process| in_turn(&[3, 5, 9], first, process).unwrap());
+        assert_eq!(of(0), [3, 3, 5, 5, 9, 9, 3, 3]);
+        assert_eq!(of(1), [5, 5, 9, 9, 3, 3, 5, 5]);
+        assert_eq!(in_turn(&[], 7, 1), None);
+    }
 }
