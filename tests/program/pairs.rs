@@ -2,16 +2,11 @@
 
 use crate::diff::{json, run};
 use crate::experiment::{TINY, write_tiny};
-use crate::program::pathmark;
 use assert_cmd::cargo::cargo_bin;
-use pathmark::experiment::{CellJob, PointJob, SceneVersion};
-use pathmark::machine::allowed_cpus;
-use pathmark::measure::{COLUMNS, Settings, Setup};
+use pathmark::measure::COLUMNS;
 use std::collections::BTreeSet;
 use std::fs;
-use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
-use std::process::Stdio;
 
 /// A row's cell, process, pair, place and position in the sweep.
 type Run = (String, u32, Option<u32>, Option<u32>, u64);
@@ -77,34 +72,6 @@ fn compared_cells_run_in_turns() {
     // The page draws speedups from both kinds of rows.
     let figure = fs::read_to_string(folder.path().join("out/tiny/figures/speedup.svg")).unwrap();
     assert!(figure.contains("work-stealing"), "{figure}");
-}
-
-/// A process that is told its processor stays there.
-#[test]
-fn a_process_stays_on_the_processor_that_it_is_told() {
-    let settings = Settings { scene: "cornell".to_string(), strategy: "serial".to_string(), ..Settings::default() };
-    // Only Linux tells.
-    let Some(cpu) = allowed_cpus().last().copied() else { return };
-    let job = CellJob {
-        points: vec![PointJob { cell: "one".to_string(), spp: settings.spp, image: None }],
-        scene: SceneVersion::of(&Setup::prepare(settings.clone()).unwrap()),
-        settings,
-        stays: true,
-        cpu: Some(cpu),
-        ..CellJob::default()
-    };
-    let folder = tempfile::tempdir().unwrap();
-    let mut child = pathmark(folder.path(), &["cell"]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
-    let mut input = child.stdin.take().unwrap();
-    writeln!(input, "{}", serde_json::to_string(&job).unwrap()).unwrap();
-    let mut answer = String::new();
-    BufReader::new(child.stdout.take().unwrap()).read_line(&mut answer).unwrap();
-    let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap();
-    drop(input);
-    child.wait().unwrap();
-    assert!(answer.contains("\"checksum\""), "{answer}");
-    let allowed = status.lines().find_map(|line| line.strip_prefix("Cpus_allowed_list:")).unwrap();
-    assert_eq!(allowed.trim(), cpu.to_string());
 }
 
 /// Comparisons that missed their goal have as many processes as the profile allows; other cells have those of the first

@@ -50,19 +50,3 @@ fn cells_whose_pins_are_refused_have_rows_with_the_reason() {
         assert_eq!(row[column("checksum")].is_empty(), is_pinned, "{row:?}");
     }
 }
-
-/// Nobody asked for the processor that serial runs share while they take turns, so a refusal leaves them where they are.
-#[test]
-fn turns_whose_processor_is_refused_run_anywhere() {
-    let folder = tempfile::tempdir().unwrap();
-    let compare = "[[compare]]\nwith = { decomposition = [\"rows\"] }\n\n[matrix]";
-    let tiny = TINY.replace("[matrix]", compare).replace("threads = [1, 2]", "threads = [1]");
-    write_tiny(folder.path(), &tiny.replace("repetitions = 3", "repetitions = 1\npairs = 2"));
-    let serial = ["--set", "strategy=serial", "--set", "decomposition=rows,tiles:8x8"];
-    let sweep = ["run", "tiny.toml", "--quick", "--out", "out"];
-    refused(folder.path(), &[&sweep[..], &serial].concat()).with_code(0);
-    let mut rows = csv::Reader::from_path(folder.path().join("out/tiny/records.csv")).unwrap();
-    let pair = rows.headers().unwrap().iter().position(|head| head == "pair").unwrap();
-    let pairs: Vec<bool> = rows.records().map(|row| !row.unwrap()[pair].is_empty()).collect();
-    assert!(pairs.len() > 2 && pairs.iter().all(|is_in_pair| *is_in_pair), "{pairs:?}");
-}

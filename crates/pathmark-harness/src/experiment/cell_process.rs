@@ -23,10 +23,8 @@ use crate::image_io::{self, Image};
 use crate::input::read_text;
 use crate::kernel::DEVICE_NAME;
 use crate::lab::Lab;
-use crate::machine::pin_thread;
 use crate::measure::{
-    Outcome, Record, Rounds, Settings, Setup, TraceFile, Warning, available_threads, batch_runs, failure,
-    missing_external, run_external,
+    Outcome, Record, Rounds, Settings, Setup, TraceFile, Warning, batch_runs, failure, missing_external, run_external,
 };
 use crate::metric::cross_mse;
 use serde::{Deserialize, Serialize};
@@ -62,9 +60,6 @@ pub struct CellJob {
     /// Whether the process stays and runs the cell again for each further line of its input.
     #[serde(default)]
     pub stays: bool,
-    /// The processor on which it runs, if it is to stay on one.
-    #[serde(default)]
-    pub cpu: Option<usize>,
 }
 
 /// The first row of a process that stays.
@@ -371,12 +366,6 @@ pub fn child_main(lab: &Lab, file: Option<&Path>) -> Result<()> {
     let mut text = String::new();
     std::io::stdin().read_line(&mut text).map_err(|e| Error::system("reading", "standard input", e))?;
     let job = read(&text, "standard input")?;
-    if let Some(cpu) = job.cpu {
-        // The machine's processors are counted first: rows compare the load of others with all of them. Where the system
-        // refuses to pin, it moves the process as it likes.
-        available_threads();
-        pin_thread(&[cpu]).ok();
-    }
     let (tell, told) = channel();
     let listen = move || {
         // The parent's lines end when it is gone.

@@ -13,8 +13,6 @@
 use super::diff::parse_share;
 use super::{Cell, Definition, Profile};
 use crate::error::{Error, InputError, Result};
-use crate::kernel::DEVICE_NAME;
-use crate::machine::PinPolicy;
 use crate::measure::{SERIAL, SETTINGS};
 use serde::Deserialize;
 use std::collections::{BTreeMap, HashSet};
@@ -157,15 +155,6 @@ impl Comparisons {
         found
     }
 
-    /// The cells of groups in which all runs are serial, and the system chooses where they run.
-    pub(super) fn serial_cells(&self, cells: &[Cell]) -> HashSet<usize> {
-        let is_serial = |index: &usize| {
-            let settings = &cells[*index].settings;
-            settings.is_serial() && settings.pin == PinPolicy::None && settings.spec.kernel != DEVICE_NAME
-        };
-        self.groups(cells.len()).into_iter().filter(|group| group.iter().all(is_serial)).flatten().collect()
-    }
-
     /// The groups of cells that are connected by comparisons, each in the order of the cells.
     pub(super) fn groups(&self, cells: usize) -> Vec<Vec<usize>> {
         let mut group_of: Vec<usize> = (0..cells).collect();
@@ -217,25 +206,6 @@ mod tests {
             let scenes = seeds.iter().map(|pair| cells[pair.what].settings.scene.as_str());
             assert_eq!(scenes.collect::<HashSet<_>>().len(), 1);
         }
-    }
-
-    /// One group compares serial runs, one serial runs with others, and one has a pin that somebody asked for.
-    #[test]
-    fn groups_of_serial_runs_are_told_apart() {
-        let text = "title = \"t\"\nquestion = \"q\"\nfigures = []\n[[compare]]\nwith = { effects = [\"smallpt\"] }\n\
-                    [[matrix]]\nscene = [\"cornell\"]\nspp = [4]\nseed = [1]\nstrategy = [\"serial\"]\nthreads = [1]\n\
-                    decomposition = [\"rows\"]\nkernel = [\"scalar\"]\neffects = [\"fitting\", \"all\"]\n\
-                    [[matrix]]\nscene = [\"cornell\"]\nspp = [4]\nseed = [2]\nstrategy = [\"serial\", \"rayon\"]\nthreads = [1]\n\
-                    decomposition = [\"rows\"]\nkernel = [\"scalar\"]\neffects = [\"fitting\", \"all\"]\n\
-                    [[matrix]]\nscene = [\"cornell\"]\nspp = [4]\nseed = [3]\nstrategy = [\"serial\"]\nthreads = [1]\n\
-                    decomposition = [\"rows\"]\nkernel = [\"scalar\"]\neffects = [\"fitting\", \"all\"]\npin = [\"compact\"]\n";
-        let definition = Definition::from_text(&Lab::built_in(), "x", "x.toml", text).unwrap();
-        let cells = definition.cells(Profile::Quick).unwrap();
-        let comparisons = Comparisons::of(&definition, Profile::Quick, &cells).unwrap();
-        assert_eq!(comparisons.groups(cells.len()).len(), 3);
-        let found = comparisons.serial_cells(&cells);
-        assert_eq!(found.len(), 2);
-        assert!(found.iter().all(|index| cells[*index].settings.spec.seed == 1));
     }
 
     /// A cell is selected by the profile that fits its scene, even if it asked for none. Cells of two scenes are compared

@@ -4,7 +4,6 @@
 //! numbers of processes and pairs for an interval (T. Kalibera and R. Jones, "Rigorous Benchmarking in Reasonable Time",
 //! ISMM 2013, section 7).
 
-use super::CellJob;
 use super::pairs::{Contestant, run_pairs};
 use super::sweep::Sweep;
 use crate::analysis::adjacent_pairs::{Costs, PowerPlan, Spread, by_process, spread};
@@ -48,11 +47,8 @@ impl Sweep<'_> {
             let mut seconds = 0.0;
             for process in 0..PROCESSES {
                 let own = std::env::current_exe().map_err(|e| format!("finding this program: {e}"));
-                let contestant = |index: &usize| {
-                    let job = self.job(&self.cells[*index], (process, 0), &self.options.out, &[], None).alone();
-                    let cpu = self.processor(*index, process);
-                    Contestant::new(CellJob { cpu, ..job }, own.clone(), None)
-                };
+                let job = |index: &usize| self.job(&self.cells[*index], (process, 0), &self.options.out, &[], None);
+                let contestant = |index| Contestant::new(job(index).alone(), own.clone(), None);
                 let mut contestants: Vec<Contestant> = group.iter().map(contestant).collect();
                 let before = Instant::now();
                 for (at, Record { pair, makespan_s, runs, .. }) in

@@ -8,7 +8,7 @@ use super::records_file::RecordsFile;
 use super::stopping_rule::{Decisions, Goal, half_width};
 use super::sweep::{Summary, Sweep};
 use super::time_limit::Limits;
-use super::{Cell, CellJob, CellPoint, HalfFile, Progress, Reference};
+use super::{Cell, CellPoint, HalfFile, Progress, Reference};
 use crate::error::Result;
 use crate::measure::{LeftOut, Record, SETTINGS, Setting, Settings, TimingConcerns};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
@@ -143,8 +143,7 @@ impl<'a> Running<'a> {
         let resumed = self.first_pairs.get(&process).copied().filter(|_| !members.iter().all(is_missing));
         let job = |index: usize, running: &Self| {
             let of = (process, running.order);
-            let job = running.sweep.job(&cells[index], of, &running.folder, &running.references, running.lowest_seed);
-            CellJob { cpu: running.sweep.processor(index, process), ..job }
+            running.sweep.job(&cells[index], of, &running.folder, &running.references, running.lowest_seed)
         };
         let own = std::env::current_exe().map_err(|e| format!("finding this program: {e}"));
         let mut group = Vec::new();

@@ -21,7 +21,6 @@ use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
 use crate::film::Film;
-use crate::machine::fastest_cpus;
 use crate::measure::{CALIBRATIONS, LeftOut, Record, TimingConcerns, write_calibrations};
 use crate::temporary;
 use std::collections::HashSet;
@@ -90,8 +89,6 @@ pub struct Sweep<'a> {
     pub(super) until: Option<StoppingRule>,
     /// The cells that run side by side.
     pub(super) comparisons: Comparisons,
-    /// Those of them that share a processor while they take turns: serial ones, if there is no other build.
-    sharing: HashSet<usize>,
 }
 
 impl<'a> Sweep<'a> {
@@ -154,14 +151,13 @@ impl<'a> Sweep<'a> {
             files.claims("out", &folder.join(name))?;
         }
         let until = StoppingRule::of(definition, options)?;
-        let sharing = if options.baseline.is_none() { comparisons.serial_cells(&cells) } else { HashSet::new() };
-        Ok(Self { definition, options, cells, references, until, comparisons, sharing })
+        Ok(Self { definition, options, cells, references, until, comparisons })
     }
 
     /// Runs the repetitions of cells that have no rows yet. Each repetition visits all cells once, in a different
     /// order.
     pub fn run(&self, progress: &dyn Progress) -> Result<Summary> {
-        let Self { definition, options, cells, references: wanted, until, comparisons, .. } = self;
+        let Self { definition, options, cells, references: wanted, until, comparisons } = self;
         let folder = options.out.join(&definition.name);
         let run = self.run_file()?;
         let (file, done) = open(definition, options, &run, &folder)?;
@@ -256,14 +252,6 @@ impl<'a> Sweep<'a> {
         Ok(summary)
     }
 
-    /// The processor of a cell's process. Two processors may differ in speed for as long as a process lives, because a host
-    /// shares one of them, so serial runs that take turns share theirs. Sweeps beside each other begin with different ones.
-    /// `None` for other cells, and where the system does not list its processors.
-    pub(super) fn processor(&self, index: usize, process: u32) -> Option<usize> {
-        let cpus = if self.sharing.contains(&index) { fastest_cpus() } else { Vec::new() };
-        in_turn(&cpus, std::process::id(), process)
-    }
-
     /// The pairs of a process, where cells run side by side.
     pub(super) fn pairs(&self) -> Result<u32> {
         Ok(self.definition.pairs(self.options.profile)?.unwrap_or(USUAL_PAIRS))
@@ -311,7 +299,6 @@ impl<'a> Sweep<'a> {
             external: cell.external.clone().map(|external| (external, folder.join("external"))),
             trace: definition.keeps(Keep::Traces).then(trace),
             stays: false,
-            cpu: None,
         }
     }
 }
@@ -404,23 +391,4 @@ fn check_names(definition: &Definition, options: &Options, cells: &[Cell]) -> Re
         }
     }
     Ok(())
-}
-
-/// The processor of a process: two processes use one processor, because these begin with either order, and the next two
-/// another one.
-fn in_turn(cpus: &[usize], first: u32, process: u32) -> Option<usize> {
-    cpus.get(first.wrapping_add(process / 2) as usize % cpus.len().max(1)).copied()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::in_turn;
-
-    #[test]
-    fn two_processes_share_a_processor() {
-        let of = |first: u32| [0, 1, 2, 3, 4, 5, 6, 7].map(|process| in_turn(&[3, 5, 9], first, process).unwrap());
-        assert_eq!(of(0), [3, 3, 5, 5, 9, 9, 3, 3]);
-        assert_eq!(of(1), [5, 5, 9, 9, 3, 3, 5, 5]);
-        assert_eq!(in_turn(&[], 7, 1), None);
-    }
 }

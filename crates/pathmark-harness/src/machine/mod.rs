@@ -23,7 +23,7 @@ pub use cpu_list::{cpu_list, parse_cpu_list};
 pub use layout::{CacheLayout, CoreKind, Layout};
 #[cfg(target_os = "linux")]
 use linux as system;
-pub use pinning::{PinPolicy, fastest_cpus};
+pub use pinning::PinPolicy;
 pub use quota::cpu_quota;
 pub(crate) use system::processor_numbers;
 pub use system::{allowed_cpus, current_cpu, machine_id, pin_thread};

@@ -63,14 +63,17 @@ impl PinPolicy {
 
     /// The processor of each worker of this process; empty for [`PinPolicy::None`].
     pub fn cpus(&self, workers: usize) -> Result<Vec<usize>> {
+        // Sweeps check thousands of cells, and the machine stays the same.
+        static TOPOLOGY: LazyLock<Topology> = LazyLock::new(|| Topology::read(Path::new("/")));
         match self {
             Self::None => Ok(Vec::new()),
-            _ => self.cpus_of(&topology(), workers),
+            _ => self.cpus_of(&TOPOLOGY.clone().within(&allowed_cpus()), workers),
         }
     }
 
     /// The same on a machine whose processors this process may use.
     fn cpus_of(&self, topology: &Topology, workers: usize) -> Result<Vec<usize>> {
+        let fastest = topology.kinds().first().copied();
         let order = match self {
             Self::None => return Ok(Vec::new()),
             Self::Compact => compact(topology),
@@ -80,7 +83,10 @@ impl PinPolicy {
                 firsts.sort_by_key(|cpu| std::cmp::Reverse(cpu.capacity));
                 firsts.into_iter().map(|cpu| cpu.id).collect()
             }
-            Self::Performance => fastest(topology),
+            Self::Performance => {
+                let fast = topology.cpus.iter().filter(|cpu| Some(cpu.capacity) == fastest);
+                scattered(&fast.collect::<Vec<_>>())
+            }
             Self::List(cpus) => {
                 let there = |id: &usize| topology.cpus.iter().any(|cpu| cpu.id == *id);
                 if let Some(unknown) = cpus.iter().find(|id| !there(id)) {
@@ -103,23 +109,6 @@ impl PinPolicy {
         }
         Ok(order[..workers].to_vec())
     }
-}
-
-/// The processors that this process may use, and how they share cores.
-fn topology() -> Topology {
-    // Sweeps check thousands of cells, and the machine stays the same.
-    static TOPOLOGY: LazyLock<Topology> = LazyLock::new(|| Topology::read(Path::new("/")));
-    TOPOLOGY.clone().within(&allowed_cpus())
-}
-
-/// The processors of the fastest kind of core that this process may use; empty if the system does not list them.
-pub fn fastest_cpus() -> Vec<usize> {
-    fastest(&topology())
-}
-
-fn fastest(topology: &Topology) -> Vec<usize> {
-    let kind = topology.kinds().first().copied();
-    scattered(&topology.cpus.iter().filter(|cpu| Some(cpu.capacity) == kind).collect::<Vec<_>>())
 }
 
 /// All processors of a core, then the next core of the socket, fast cores first.
